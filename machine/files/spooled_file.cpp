@@ -33,18 +33,29 @@ SpooledFile::~SpooledFile() {
 std::string SpooledFile::open(const std::string& path, std::int64_t most) {
   if (std::string problem = why_unreadable(path); !problem.empty()) return problem;
   const File from(std::fopen(path.c_str(), "rb"));
-  const File copy(from == nullptr ? nullptr : std::tmpfile());
-  if (copy == nullptr) return text::words_of(errno);
+  if (from == nullptr) return text::words_of(errno);
   std::vector<char> piece(kPiece);
+  const std::string problem = take(
+      [&] { return std::string_view(piece.data(), std::fread(piece.data(), 1, piece.size(), from.get())); },
+      most);
+  return problem.empty() && std::ferror(from.get()) != 0 ? text::words_of(errno) : problem;
+}
+
+std::string SpooledFile::hold(const std::function<std::string()>& next, std::int64_t most) {
+  std::string piece;
+  return take([&] { return std::string_view(piece = next()); }, most);
+}
+
+std::string SpooledFile::take(const std::function<std::string_view()>& next, std::int64_t most) {
+  const File copy(std::tmpfile());
+  if (copy == nullptr) return text::words_of(errno);
   std::int64_t size = 0;
-  for (;;) {
-    const std::size_t got = std::fread(piece.data(), 1, piece.size(), from.get());
-    if (got == 0) break;
-    size += static_cast<std::int64_t>(got);
+  for (std::string_view piece = next(); !piece.empty(); piece = next()) {
+    size += static_cast<std::int64_t>(piece.size());
     if (size > most) return too_large(most);
-    if (std::fwrite(piece.data(), 1, got, copy.get()) != got) return text::words_of(errno);
+    if (std::fwrite(piece.data(), 1, piece.size(), copy.get()) != piece.size()) return text::words_of(errno);
   }
-  if (std::ferror(from.get()) != 0 || std::fflush(copy.get()) != 0) return text::words_of(errno);
+  if (std::fflush(copy.get()) != 0) return text::words_of(errno);
   if (size == 0) return {};
   void* const at =
       ::mmap(nullptr, static_cast<std::size_t>(size), PROT_READ, MAP_SHARED, ::fileno(copy.get()), 0);

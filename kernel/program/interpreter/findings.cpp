@@ -40,6 +40,7 @@ class FileReader {
       add(text::Severity::warning, Fault::cyrillic, letter.column,
           {letter.cyrillic, std::string(letter.latin)});
     }
+    counts_[1].found += source_.more_look_alikes();
     for (const auto& twice : source_.duplicates()) {
       line_ = static_cast<int>(twice.line) + 1;
       add(text::Severity::warning, Fault::label_twice,

@@ -2,7 +2,6 @@
 #include "kernel/program/reading/look_alikes.hpp"
 
 #include <algorithm>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -11,7 +10,7 @@
 namespace servogate::program {
 namespace {
 
-constexpr std::size_t kMostTold = 1'000'000;
+constexpr std::size_t kMostTold = 20'000;  ///< more than `check` tells of all warnings
 
 constexpr std::pair<std::string_view, std::string_view> kLookAlikes[] = {
     {"А", "A"}, {"В", "B"}, {"Е", "E"}, {"К", "K"}, {"М", "M"}, {"Н", "H"},
@@ -19,31 +18,34 @@ constexpr std::pair<std::string_view, std::string_view> kLookAlikes[] = {
 
 bool cyrillic(char c) { return c == '\xD0' || c == '\xD1'; }
 
-using Labels = std::set<std::string_view>;
-
 bool of_name(char c) { return is_letter(c) || is_digit(c) || static_cast<unsigned char>(c) >= 128; }
 
-/// The labels in quotes in front of blocks: what they are made of is nobody's error.
-void collect_label(const Lexis& lexis, std::string_view line, Labels& labels) {
+/// The label in quotes in front of a block: what it is made of is nobody's error. Empty: there is none.
+std::string_view label_of(const Lexis& lexis, std::string_view line) {
   std::size_t pos = skip_spaces(line, 0);
   if (pos < line.size() && line[pos] == lexis.skip) pos = skip_spaces(line, pos + 1);
-  if (lexis.label != LabelForm::quoted || pos >= line.size() || line[pos] != '"') return;
+  if (lexis.label != LabelForm::quoted || pos >= line.size() || line[pos] != '"') return {};
   const std::size_t close = line.find('"', pos + 1);
-  if (close != std::string_view::npos) labels.insert(line.substr(pos + 1, close - pos - 1));
+  return close == std::string_view::npos ? std::string_view() : line.substr(pos + 1, close - pos - 1);
 }
 
+/// Calls `take(line, last)` for each line.
+template <typename Take>
+void each_line(std::string_view text, Take take) {
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    take(text.substr(from, end - from), end == text.size());
+    from = end + 1;
+  }
+}
+
+}  // namespace
+
 /// One line, read into `out`.
-class Line {
+class LineOfLookAlikes {
  public:
-  Line(const Lexis& lexis, const Labels& labels, std::string_view line, std::uint32_t index, std::string& out,
-       std::vector<LookAlike>& told)
-      : lexis_(lexis),
-        labels_(labels),
-        line_(line),
-        index_(index),
-        out_(out),
-        begin_(out.size()),
-        told_(told) {}
+  LineOfLookAlikes(LookAlikes& all, std::string_view line, std::string& out)
+      : all_(all), lexis_(*all.lexis_), line_(line), out_(out), begin_(out.size()) {}
 
   void read() {
     int comment = 0;
@@ -73,7 +75,7 @@ class Line {
   std::size_t name(std::size_t from) {
     std::size_t end = from;
     while (end < line_.size() && of_name(line_[end])) ++end;
-    if (labels_.contains(line_.substr(from, end - from))) return copy(from, end);
+    if (all_.labels_.contains(line_.substr(from, end - from))) return copy(from, end);
     while (from < end) from = cyrillic(line_[from]) ? word(from) : copy(from, from + 1);
     return end;
   }
@@ -86,35 +88,22 @@ class Line {
     if (!all || end == from) return copy(from, std::max(end, from + 1));
     for (std::size_t i = from; i < end; i += 2) {
       const std::string_view latin = latin_of(line_.substr(i, 2));
-      if (told_.size() < kMostTold)
-        told_.push_back(
-            {index_, static_cast<int>(out_.size() - begin_) + 1, std::string(line_.substr(i, 2)), latin});
+      if (all_.told_.size() < kMostTold)
+        all_.told_.push_back(
+            {all_.line_, static_cast<int>(out_.size() - begin_) + 1, std::string(line_.substr(i, 2)), latin});
+      else
+        ++all_.untold_;
       out_ += latin;
     }
     return end;
   }
 
+  LookAlikes& all_;
   const Lexis& lexis_;
-  const Labels& labels_;
   std::string_view line_;
-  std::uint32_t index_;
   std::string& out_;
   std::size_t begin_;
-  std::vector<LookAlike>& told_;
 };
-
-/// Calls `take(line, index, last)` for each line.
-template <typename Take>
-void each_line(std::string_view text, Take take) {
-  std::uint32_t index = 0;
-  for (std::size_t from = 0; from < text.size(); ++index) {
-    const std::size_t end = std::min(text.find('\n', from), text.size());
-    take(text.substr(from, end - from), index, end == text.size());
-    from = end + 1;
-  }
-}
-
-}  // namespace
 
 bool any_cyrillic(std::string_view text) {
   return text.find('\xD0') != std::string_view::npos || text.find('\xD1') != std::string_view::npos;
@@ -126,22 +115,29 @@ std::string_view latin_of(std::string_view cyrillic) {
   return {};
 }
 
-std::vector<LookAlike> read_look_alikes(const Lexis& lexis, std::string& text) {
-  std::vector<LookAlike> told;
-  if (!any_cyrillic(text)) return told;
-  Labels labels;
-  each_line(text, [&](std::string_view line, std::uint32_t, bool) { collect_label(lexis, line, labels); });
+void LookAlikes::collect_labels(std::string_view lines) {
+  if (!any_cyrillic(lines)) return;
+  each_line(lines, [this](std::string_view line, bool) {
+    if (const std::string_view label = label_of(*lexis_, line); any_cyrillic(label)) labels_.emplace(label);
+  });
+}
+
+void LookAlikes::read(std::string& lines) {
+  if (!any_cyrillic(lines)) {
+    line_ += static_cast<std::uint32_t>(std::count(lines.begin(), lines.end(), '\n'));
+    return;
+  }
   std::string out;
-  out.reserve(text.size());
-  each_line(text, [&](std::string_view line, std::uint32_t index, bool last) {
+  out.reserve(lines.size());
+  each_line(lines, [&](std::string_view line, bool last) {
     if (any_cyrillic(line))
-      Line(lexis, labels, line, index, out, told).read();
+      LineOfLookAlikes(*this, line, out).read();
     else
       out.append(line);
     if (!last) out += '\n';
+    ++line_;
   });
-  text = std::move(out);
-  return told;
+  lines = std::move(out);
 }
 
 }  // namespace servogate::program

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <memory>
 
 #include "kernel/program/reading/block.hpp"
+#include "kernel/program/reading/whole_lines.hpp"
 
 namespace servogate::program {
 
@@ -54,7 +56,7 @@ Source::Source(const Dialect& dialect, std::string name, ProgramText text, std::
   // CP/M and its heirs end a text with 1Ah, and may fill the last record up.
   if (const std::size_t end_mark = view_.find_first_of('\x1A', last_of(view_)); end_mark != std::string::npos)
     view_ = view_.substr(0, end_mark);
-  if (needs_rewriting(view_, text_)) rewrite(std::string(view_));
+  if (needs_rewriting(view_, text_)) rewrite();
   if (dialect.lexis.starts_at_tape) start_ = kNone;
   std::vector<std::uint32_t> open;
   marks_.reserve(view_.size() / 24 / kStride + 2);
@@ -71,41 +73,43 @@ Source::Source(const Dialect& dialect, std::string name, ProgramText text, std::
   }
 }
 
-/// Texts of old computers and with look-alike letters are kept in memory, as they are read.
-void Source::rewrite(std::string text) {
-  put_line_ends(text);
-  look_alikes_ = read_look_alikes(dialect_->lexis, text);
-  text_ = ProgramText(std::move(text));
-  view_ = text_.view();
+/// Texts of old computers and with look-alike letters are kept as they are read: beside the text itself where
+/// that is large, in memory otherwise.
+void Source::rewrite() {
+  std::string lines;
+  LookAlikes labels(dialect_->lexis);
+  for (WholeLines all(view_, text_); all.next(lines);) labels.collect_labels(lines);
+  for (const ProgramText::Store* store : {text_.store(), static_cast<const ProgramText::Store*>(nullptr)}) {
+    WholeLines all(view_, text_);
+    LookAlikes letters = labels;
+    const auto next = [&] {
+      if (all.next(lines)) letters.read(lines);
+      return std::move(lines);
+    };
+    std::shared_ptr<const ProgramText::Store> held;
+    std::string whole;
+    if (store != nullptr)
+      held = store->hold(next);
+    else
+      for (std::string piece = next(); !piece.empty(); piece = next()) whole += piece;
+    if (store != nullptr && held == nullptr) continue;
+    lone_return_ = all.lone_return();
+    look_alikes_ = letters.told();
+    more_look_alikes_ = letters.untold();
+    text_ = held != nullptr ? ProgramText(std::move(held)) : ProgramText(std::move(whole));
+    view_ = text_.view();
+    return;
+  }
 }
 
 /// What lies two windows behind a place that is read may leave memory.
 void Source::pass(std::size_t offset) const noexcept {
-  if (!text_.spooled()) return;
+  if (text_.store() == nullptr) return;
   const std::size_t window = offset / kWindow, before = window_.exchange(window, std::memory_order_relaxed);
   if (window == before) return;
   const std::size_t ahead = static_cast<std::size_t>(view_.data() - text_.view().data());
   if (before + 1 != window) return text_.leave(ahead + before * kWindow, ahead + (before + 1) * kWindow);
   if (window >= 2) text_.leave(ahead + (window - 2) * kWindow, ahead + (window - 1) * kWindow);
-}
-
-/// A CR that no LF follows ends a line as well. Those before an LF (CR CR LF, too) belong to it.
-void Source::put_line_ends(std::string& text) {
-  if (text.find('\r') == std::string::npos) return;
-  std::uint32_t line = 0;
-  for (std::size_t at = text.find_first_of("\r\n"); at != std::string::npos;
-       at = text.find_first_of("\r\n", at + 1)) {
-    const std::size_t next = text.find_first_not_of('\r', at);
-    if (text[at] == '\r') {
-      if (next != std::string::npos && text[next] == '\n') {
-        at = next;
-      } else {
-        text[at] = '\n';
-        if (lone_return_ == kNone) lone_return_ = line;
-      }
-    }
-    ++line;
-  }
 }
 
 std::string_view Source::line(std::uint32_t index) const noexcept {

@@ -62,13 +62,14 @@ class Source {
   const std::vector<Duplicate>& duplicates() const noexcept { return duplicates_; }
   /// Cyrillic letters that were read as Latin ones; the lines have the Latin ones.
   const std::vector<LookAlike>& look_alikes() const noexcept { return look_alikes_; }
+  /// How many there are beside.
+  long long more_look_alikes() const noexcept { return more_look_alikes_; }
   /// First line (from 0) that a CR alone ends, as tapes and old computers wrote them; kNone: there is none.
   std::uint32_t lone_return() const noexcept { return lone_return_; }
 
  private:
   static constexpr std::uint32_t kStride = 8;
-  void rewrite(std::string text);
-  void put_line_ends(std::string& text);
+  void rewrite();
   void index_line(std::uint32_t index, std::string_view text, std::vector<std::uint32_t>& open);
   void pass(std::size_t offset) const noexcept;
   template <typename Is>
@@ -88,6 +89,7 @@ class Source {
   std::uint32_t start_ = 0;
   std::vector<Duplicate> duplicates_;
   std::vector<LookAlike> look_alikes_;
+  long long more_look_alikes_ = 0;
   std::uint32_t lone_return_ = kNone;
   int blocks_ = 0;
 };

@@ -2,6 +2,7 @@
 #include "gateway/control/compose/program/program_file.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -36,7 +37,18 @@ namespace {
 
 constexpr std::int64_t kSmall = std::int64_t{4} << 20;  ///< bytes of a program that is read into memory
 
-/// A large program stays in a copy of its file that nobody else sees.
+/// A large program stays in a file that nobody else sees.
+class SpooledText final : public program::ProgramText::Store {
+ public:
+  std::string_view content() const noexcept override { return file.content(); }
+  void leave(std::size_t from, std::size_t to) const noexcept override { file.leave(from, to); }
+  std::shared_ptr<const Store> hold(const std::function<std::string()>& next) const override {
+    auto other = std::make_shared<SpooledText>();
+    return other->file.hold(next, files::kMostOfProgram).empty() ? other : nullptr;
+  }
+  files::SpooledFile file;
+};
+
 std::optional<program::ProgramText> read_program(const std::string& path, std::string& reason) {
   const std::int64_t size = files::size_of(path);
   if (size <= kSmall) {
@@ -44,12 +56,10 @@ std::optional<program::ProgramText> read_program(const std::string& path, std::s
     if (!content) return std::nullopt;
     return program::ProgramText(std::move(*content));
   }
-  auto file = std::make_shared<files::SpooledFile>();
-  reason = file->open(path, files::kMostOfProgram);
+  auto spooled = std::make_shared<SpooledText>();
+  reason = spooled->file.open(path, files::kMostOfProgram);
   if (!reason.empty()) return std::nullopt;
-  const files::SpooledFile* const spooled = file.get();
-  return program::ProgramText(file, spooled->content(),
-                              [spooled](std::size_t from, std::size_t to) { spooled->leave(from, to); });
+  return program::ProgramText(std::move(spooled));
 }
 
 struct NotUtf8 {

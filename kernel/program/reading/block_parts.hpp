@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <string_view>
+
+#include "kernel/program/reading/block.hpp"
+
+/// The parts of a block as block.cpp puts them together.
+namespace servogate::program {
+
+/// A letter, a digit or _.
+inline bool name_character(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
+/// Throws: `c` belongs to the prefix and does not stand in its order.
+[[noreturn]] void fail_prefix(const Dialect& dialect, int column, char c);
+/// Block number, label and the like in their fixed order; the body begins behind them.
+void read_prefix(const Dialect& dialect, std::string_view line, Block& block);
+/// The words of the body, each judged by its rule and against those before it.
+void read_words(const Dialect& dialect, const AxisLetters& axes, Block& block);
+
+}  // namespace servogate::program
