@@ -219,8 +219,9 @@ ProgramErrors check_programs(const CheckOptions& options, const machine::Machine
     std::vector<text::Finding> found;
     nlohmann::json entry{{"program", name}};
     if (open_program(machine, name, options.dialect, program, found)) {
-      const ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine),
-                                                channel::Forecast::Depth::surveyed);
+      ProgramCheck result = check_program(machine, program, tables, start_after_homing(machine),
+                                          channel::Forecast::Depth::surveyed);
+      prove_started(machine, program, tables, result);
       found.insert(found.end(), result.report.findings.begin(), result.report.findings.end());
       explain_power_on(machine, program, found);
       if (const auto slow = slow_corners(machine, program, tables, start_after_homing(machine), result))

@@ -391,21 +391,48 @@ TEST_F(TwoProcesses, end_with_an_error_at_a_program_that_is_missing_or_cannot_be
   EXPECT_EQ(at(0), 0.0);
 }
 
-TEST_F(TwoProcesses, ask_the_gate_for_a_start_and_end_with_its_refusal) {
+TEST_F(TwoProcesses, end_with_an_error_where_somebody_works_by_hand_in_the_other_one) {  // nc110-b.md 19, 2
   programs_ = {{"A", "G1 Z5 F1000\nM30\n"}};
   compose("(EXE,2,A)\nG1 X50 F1000\nM30\n", "M30\n");
   ASSERT_EQ(ask(RequestKind::mode, 1, static_cast<double>(image::Mode::manual)), Refusal::none);
-  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
-  ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended; })) << error_of(0);
-  ASSERT_TRUE(until([&] { return state(1) == ProcessState::ended; })) << "AUTO comes with the start";
-  EXPECT_NEAR(at(2), 5.0, 1e-9);
-  ASSERT_EQ(ask(RequestKind::jog_continuous, 1, -1.0, 2), Refusal::none);
   ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
   ASSERT_TRUE(until([&] { return state(0) == ProcessState::stopped_by_alarm; }));
   EXPECT_NE(error_of(0).find("process 2 does not start 'A': `servogate start --process 2` says"),
             std::string::npos)
       << error_of(0);
+  for (int n = 0; n < 1000; ++n) step();
+  EXPECT_EQ(at(2), 0.0);
+  EXPECT_EQ(cycle_->image().processes[1].mode, image::Mode::manual);
+}
+
+TEST_F(TwoProcesses, ask_the_gate_for_a_start_and_end_with_its_refusal) {
+  programs_ = {{"A", "G1 Z5 F1000\nM30\n"}};
+  compose("(EXE,2,A)\nG1 X50 F1000\nM30\n", "M30\n");
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended; })) << error_of(0);
+  ASSERT_TRUE(until([&] { return state(1) == ProcessState::ended; }));
+  EXPECT_NEAR(at(2), 5.0, 1e-9);
+  ASSERT_EQ(ask(RequestKind::jog_continuous, 1, -1.0, 2), Refusal::none);
+  ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+  ASSERT_TRUE(until([&] { return state(0) == ProcessState::stopped_by_alarm; }));
   EXPECT_NEAR(at(0), 50.0, 1e-9) << "nothing behind it";
+}
+
+TEST_F(TwoProcesses, start_and_send_nothing_while_they_are_held) {
+  programs_ = {{"A", "G1 Z100 F6000\nM30\n"}, {"B", "(WAI,1)\nG1 Z50 F6000\nM30\n"}};
+  for (const bool sends : {false, true}) {
+    SCOPED_TRACE(sends);
+    compose(sends ? "(EXE,2,B)\n#(DLY,1)\n#(SND,2)\nM30\n" : "#(DLY,1)\n(EXE,2,A)\nM30\n", "M30\n");
+    ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+    if (sends) ASSERT_TRUE(until([&] { return state(1) == ProcessState::waiting; }));
+    for (int n = 0; n < 300; ++n) step();
+    ASSERT_EQ(ask(RequestKind::hold, 0), Refusal::none);
+    for (int n = 0; n < 5000; ++n) step();
+    EXPECT_EQ(at(2), 0.0);
+    ASSERT_EQ(ask(RequestKind::start, 0), Refusal::none);
+    ASSERT_TRUE(until([&] { return state(0) == ProcessState::ended && state(1) == ProcessState::ended; }));
+    EXPECT_NEAR(at(2), sends ? 50.0 : 100.0, 1e-9);
+  }
 }
 
 }  // namespace

@@ -141,6 +141,24 @@ TEST_F(TwoProcesses, read_the_records_that_a_program_of_the_other_one_has_writte
   EXPECT_TRUE(contains(all, ",15.25")) << "the record holds what was read";
 }
 
+TEST_F(TwoProcesses, carry_over_what_each_program_changed_and_nothing_that_it_was_given) {
+  const std::string state = file("state");
+  shell_.up_file(file("machine.toml"), {"--virtual", "--speed", "20", "--state", state});
+  good({"power", "on"});
+  write("SLV", "(WAI,1)\n(REL)\n");
+  const auto text = [](bool with) {
+    return std::string("(RQO,1,X5)\n(CRE,1,PTS,3)\n") + (with ? "(EXE,2,SLV)\n#(SND,2)\n" : "") +
+           "(RQO,1,X5)\nM30\n";
+  };
+  good({"load", write("starts.nc", text(true))});
+  good({"start", "--wait"});
+  ASSERT_TRUE(until_state(2, "ended"));
+  good({"down"});
+  std::ifstream kept(state + "/origins.toml");
+  const std::string words{std::istreambuf_iterator<char>(kept), {}};
+  EXPECT_TRUE(contains(words, "10")) << words;
+}
+
 TEST_F(TwoProcesses, read_how_far_the_axes_of_the_other_one_still_have_to_go) {
   begin();
   good({"load", write("far.nc", "G1 X200 F3000\nM30\n")});

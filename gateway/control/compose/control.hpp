@@ -52,8 +52,8 @@ class Control {
   /// The program that another process' program has given this one since the last call; nullptr: none. Any
   /// thread outside the cycle.
   std::shared_ptr<const ProgramFile> take_given(int process);
-  /// What the newest program of a process was given to begin with, where another process' program gave it: that
-  /// one's tables as they stood. nullopt: the machine's. Any thread outside the cycle.
+  /// What the newest program of a process was given to begin with, where another process' program gave it:
+  /// that one's tables as they stood. nullopt: the machine's. Any thread outside the cycle.
   std::optional<program::Tables> given_tables(int process);
   /// Its program has unloaded itself, and none has been loaded since.
   bool unloaded(int process) const { return processes_[static_cast<std::size_t>(process)]->unloaded(); }

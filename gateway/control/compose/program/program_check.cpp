@@ -2,6 +2,7 @@
 #include "gateway/control/compose/program/program_check.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <variant>
 
 #include "firmware_if/text/units.hpp"
@@ -22,6 +23,14 @@ const text::Entry kByPlace{
     "from the present position of the axes this block gives an error: {0} ({1}); from another position it "
     "may not",
     "с нынешнего положения осей кадр даёт ошибку: {0} ({1}); с другого её может не быть"};
+
+const text::Entry kByStart{
+    "program.by-start",
+    "this program is started by another one, and this block gives an error: {0} ({1}); what the other one "
+    "has "
+    "changed by then may prevent it",
+    "эту программу пускает другая, и кадр даёт ошибку: {0} ({1}); её может не быть из-за того, что к этому "
+    "времени изменит другая"};
 
 const text::Entry kTurningModes{
     "program.turning-modes",
@@ -107,6 +116,9 @@ ProgramCheck check_program(const machine::MachineConfig& machine, const ProgramF
           if (stops && check.stops++ == 0 && c.file == 0) check.first_stop = c.line;
         }
         if (auto finding = not_ordered(machine, file, c)) return finding;
+        if (const auto* order = std::get_if<program::ProcessOrder>(&c.what);
+            order != nullptr && order->action == program::ProcessOrder::Action::start)
+          check.starts.emplace(order->process - 1, order->program);
         const std::optional<text::Finding> flaw = forecast.take(c);
         const int axis = forecast.foreign_axis(c);
         return axis < 0
@@ -170,9 +182,11 @@ std::optional<text::Finding> slow_corners(const machine::MachineConfig& machine,
                        {}};
 }
 
-ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramFile& file,
-                           const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
-                           const std::stop_token& stop) {
+namespace {
+
+ProgramCheck prove_alone(const machine::MachineConfig& machine, const ProgramFile& file,
+                         const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
+                         const std::stop_token& stop) {
   ProgramCheck check = check_program(machine, file, tables, start, depth, stop);
   std::vector<text::Finding>& findings = check.report.findings;
   const auto of_run = findings.begin() + static_cast<std::ptrdiff_t>(check.report.of_run);
@@ -189,6 +203,45 @@ ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramF
                                        [&](const text::Finding& g) { return same(*f, g); }))
         soften(*f, kByPlace);
   }
+  return check;
+}
+
+}  // namespace
+
+void prove_started(const machine::MachineConfig& machine, const ProgramFile& file,
+                   const program::Tables& tables, ProgramCheck& check, const std::stop_token& stop) {
+  std::set<std::pair<int, std::string>> seen, ahead = check.starts;
+  while (!ahead.empty()) {
+    const auto [process, name] = *ahead.begin();
+    ahead.erase(ahead.begin());
+    if (!seen.emplace(process, name).second) continue;
+    auto loaded = file.loader ? file.loader(name) : std::nullopt;
+    if (!loaded) continue;
+    ProgramFile other;
+    other.path = loaded->path.empty() ? name : loaded->path;
+    other.dialect = file.dialect;
+    other.text = program::ProgramText(std::move(loaded->text));
+    other.process = process;
+    other.model = program_model(machine, process);
+    other.loader = file.loader;
+    ProgramCheck its = prove_alone(machine, other, tables, Start{}, channel::Forecast::Depth::drivable, stop);
+    // What its run meets may be otherwise by then: it begins with the tables of the one that starts it.
+    for (std::size_t f = its.report.of_run; f < its.report.findings.size(); ++f)
+      if (is_error(its.report.findings[f])) soften(its.report.findings[f], kByStart);
+    std::copy_if(its.report.findings.begin(), its.report.findings.end(),
+                 std::back_inserter(check.report.findings), [](const text::Finding& f) {
+                   return is_error(f) || f.entry == &kByStart || f.entry == &kByPlace ||
+                          f.entry == &kBySignals;
+                 });
+    ahead.insert(its.starts.begin(), its.starts.end());
+  }
+}
+
+ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramFile& file,
+                           const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
+                           const std::stop_token& stop) {
+  ProgramCheck check = prove_alone(machine, file, tables, start, depth, stop);
+  prove_started(machine, file, tables, check, stop);
   return check;
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <stop_token>
+#include <string>
+#include <utility>
 
 #include "gateway/control/compose/program/program_file.hpp"
 #include "kernel/channel/motion/forecast.hpp"
@@ -15,9 +18,11 @@ struct ProgramCheck {
   program::CheckReport report;  ///< its findings may begin with that of the file's encoding
   double motion_s = 0.0;        ///< of all motion at an override of 100 %; 0 unless timed or surveyed
   std::vector<path::SlowPlace> slowest;  ///< where most time is lost, only if surveyed
-  long long feed_blocks = 0;    ///< elements at feed
-  long long stops = 0;          ///< of them end at rest, whatever follows
-  int first_stop = 0;           ///< line of the first of those, 0: in a subprogram, or there is none
+  long long feed_blocks = 0;             ///< elements at feed
+  long long stops = 0;                   ///< of them end at rest, whatever follows
+  int first_stop = 0;                    ///< line of the first of those, 0: in a subprogram, or there is none
+  /// Programs that it starts in other processes (from 0), each once.
+  std::set<std::pair<int, std::string>> starts;
   double seconds() const { return motion_s + report.dwell_seconds; }
 };
 
@@ -52,9 +57,15 @@ std::optional<text::Finding> slow_corners(const machine::MachineConfig& machine,
                                           const program::Tables& tables, const Start& start,
                                           const ProgramCheck& timed);
 
-/// The same for a program that is about to run: an error stays one only where the machine cannot make a
-/// difference. One that is met after the program has read a signal, or only from some places of the axes,
-/// becomes a warning which says so.
+/// Adds what is wrong with the programs that this one starts in other processes, and with those that they
+/// start, to its findings: errors of reading as they are, those of their runs as warnings. Throws as
+/// check_program().
+void prove_started(const machine::MachineConfig& machine, const ProgramFile& file,
+                   const program::Tables& tables, ProgramCheck& check, const std::stop_token& stop = {});
+
+/// The same for a program that is about to run, with the programs that it starts: an error stays one only
+/// where the machine cannot make a difference. One that is met after the program has read a signal, or only
+/// from some places of the axes, becomes a warning which says so.
 ProgramCheck prove_program(const machine::MachineConfig& machine, const ProgramFile& file,
                            const program::Tables& tables, const Start& start, channel::Forecast::Depth depth,
                            const std::stop_token& stop = {});
