@@ -145,18 +145,16 @@ TEST_F(TwoProcesses, carry_over_what_each_program_changed_and_nothing_that_it_wa
   const std::string state = file("state");
   shell_.up_file(file("machine.toml"), {"--virtual", "--speed", "20", "--state", state});
   good({"power", "on"});
-  write("SLV", "(WAI,1)\n(REL)\n");
-  const auto text = [](bool with) {
-    return std::string("(RQO,1,X5)\n(CRE,1,PTS,3)\n") + (with ? "(EXE,2,SLV)\n#(SND,2)\n" : "") +
-           "(RQO,1,X5)\nM30\n";
-  };
-  good({"load", write("starts.nc", text(true))});
+  write("SLV", "(WAI,1)\nM30\n");
+  good({"load", write("starts.nc",
+                      "(DER,1,E40)\n(CRE,1,PTS,3)\n(OPN,1,PTS,W)\nE40=1.25\n(WRT,1,1,1)\n(EXE,2,SLV)\n"
+                      "#(SND,2)\nE40=2.5\n(WRT,1,1,1)\nM30\n")});
   good({"start", "--wait"});
   ASSERT_TRUE(until_state(2, "ended"));
   good({"down"});
-  std::ifstream kept(state + "/origins.toml");
+  std::ifstream kept(state + "/records.toml");
   const std::string words{std::istreambuf_iterator<char>(kept), {}};
-  EXPECT_TRUE(contains(words, "10")) << words;
+  EXPECT_TRUE(contains(words, "{ number = 1, items = [2.5] }")) << words;
 }
 
 TEST_F(TwoProcesses, read_how_far_the_axes_of_the_other_one_still_have_to_go) {

@@ -188,6 +188,7 @@ Resident::Load::End Resident::finish(Load& load) {
 
 /// False: its program has not begun, or is still being read and is not to be looked at (`also_read`) yet.
 bool Resident::read_tables_of(int process, bool also_read) {
+  adopt_given(process);
   const std::scoped_lock lock(control_.reading());
   const channel::Feeder& feeder = control_.process(process).feeder();
   const program::Tables* tables = feeder.tables();
@@ -444,19 +445,27 @@ std::vector<Work> Resident::look_after() {
   return works;
 }
 
+/// True: another process' program has loaded one into this one.
+bool Resident::adopt_given(int process) {
+  Seat& s = seat(process);
+  const std::shared_ptr<const ProgramFile> given = control_.take_given(process);
+  if (given == nullptr) return false;
+  s.file = given;
+  s.refused.clear();
+  s.proven.reset();
+  s.given = control_.given_tables(process).value_or(state_.tables);
+  s.blocks = 0;
+  s.lines = lines_of(given->text.view());
+  if (journal_ != nullptr) journal_->loaded(process, s.file->path, s.file->dialect);
+  return true;
+}
+
 /// What programs have loaded into each other's processes, and unloaded.
 void Resident::adopt(int process) {
   Seat& s = seat(process);
-  if (const std::shared_ptr<const ProgramFile> given = control_.take_given(process)) {
-    s.file = given;
-    s.refused.clear();
-    s.proven.reset();
-    s.given = control_.given_tables(process).value_or(state_.tables);
-    const std::string_view text = given->text.view();
-    s.blocks = 0;
-    s.lines = lines_of(text);
-    if (journal_ != nullptr) journal_->loaded(process, s.file->path, s.file->dialect);
-  } else if (control_.unloaded(process) && !busy(process)) {
+  if (adopt_given(process)) return;
+  if (control_.unloaded(process) && !busy(process)) {
+    read_tables_of(process, true);
     s.file = no_program(process);
     s.refused.clear();
     s.proven.reset();

@@ -214,6 +214,7 @@ class Resident {
   bool arm(int process, ProgramChange::Kind kind);
   std::shared_ptr<const ProgramFile> no_program(int process) const;
   void adopt(int process);
+  bool adopt_given(int process);
   bool read_tables_of(int process, bool also_read);
   void count_cutting();
   /// `process` gets its tables anew even where it has them, -1: all of them.
