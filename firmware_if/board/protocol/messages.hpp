@@ -22,8 +22,6 @@ inline constexpr std::int16_t kFullScale = 32767;  ///< of analog values and dut
 
 /// Of the interface, by which a control finds the board whatever its vendor and product number.
 inline constexpr std::uint8_t kInterfaceClass = 0xFF, kInterfaceSubclass = 0x53, kInterfaceProtocol = 0x47;
-/// Product numbers are each maker's own; these are for trying out (pid.codes, 1209/0001: not for sale).
-inline constexpr std::uint16_t kTestVendor = 0x1209, kTestProduct = 0x0001;
 
 /// What a set-point channel can be.
 enum class Output : std::uint8_t { off, step, analog, pwm };

@@ -33,10 +33,6 @@ class PendantSession {
   /// `image`: the newest whole one; `now`: of the clock by which hands live.
   void step(const image::ProcessImage& image, image::Nanoseconds now);
 
-  /// Counts that moved nothing, and reports that were none.
-  std::uint64_t dropped() const noexcept { return hands_.dropped(); }
-  std::uint64_t refused_reports() const noexcept { return garbage_; }
-
  private:
   struct Axis {
     int index = -1;  ///< of the machine, -1: it has no such axis
