@@ -24,6 +24,9 @@
 /// a radius. Nothing here is real-time safe (strings); the gateway copies what the cycle needs.
 namespace servogate::machine {
 
+/// What the feed of an arc under radius compensation is the speed of: the tool's centre, the contour, or the
+/// contour on inside radii and the centre on outside ones.
+enum class ArcFeed : std::uint8_t { tool_centre, contour, inside };
 enum class AxisType : std::uint8_t { linear, rotary };
 enum class Direction : std::uint8_t { plus, minus };
 /// How an axis finds its zero. `absolute`: the kept reference of an absolute encoder; `none`: zero where it
@@ -85,15 +88,16 @@ struct AxisConfig {
   double max_jerk = 0.0;          ///< mm/s3
   double travel_min = 0.0;        ///< machine coordinates, mm; rotary with both 0: endless
   double travel_max = 0.0;
-  double following_error_warn = 0.0;      ///< mm at standstill, warning 1017; 0: none
-  double following_error_stop = 0.0;      ///< mm at standstill
-  double following_error_velocity = 0.0;  ///< s: allowed in addition per mm/s of set-point speed
-  double in_position_window = 0.01;       ///< mm
-  double in_position_time = 0.01;         ///< s inside the window
-  double in_position_timeout = 2.0;       ///< s from the set-point's rest to an alarm, 0: none
-  double jog_velocity = 0.0;              ///< mm/s, 0: a tenth of max_velocity
-  double jog_velocity_not_homed = 0.0;    ///< mm/s, also off a hard limit; 0: a hundredth of max_velocity
-  std::string limit_plus;                 ///< input points, TRUE = on the limit
+  double following_error_warn = 0.0;       ///< mm at standstill, warning 1017; 0: none
+  double following_error_stop = 0.0;       ///< mm at standstill
+  double following_error_velocity = 0.0;   ///< s: allowed in addition per mm/s of set-point speed
+  double in_position_window = 0.01;        ///< mm
+  double in_position_window_coarse = 0.0;  ///< mm, where a program asks for it; 0: four times the other
+  double in_position_time = 0.01;          ///< s inside the window
+  double in_position_timeout = 2.0;        ///< s from the set-point's rest to an alarm, 0: none
+  double jog_velocity = 0.0;               ///< mm/s, 0: a tenth of max_velocity
+  double jog_velocity_not_homed = 0.0;     ///< mm/s, also off a hard limit; 0: a hundredth of max_velocity
+  std::string limit_plus;                  ///< input points, TRUE = on the limit
   std::string limit_minus;
   double hard_limit_plus = kNoLimit;  ///< machine coordinate at which the switch works
   double hard_limit_minus = -kNoLimit;
@@ -125,6 +129,9 @@ struct AxisConfig {
     return home.acceleration > 0.0 ? home.acceleration : max_acceleration;
   }
   double greatest_torque_ramp() const { return torque_ramp > 0.0 ? torque_ramp : torque_max; }
+  double coarse_window() const {
+    return in_position_window_coarse > 0.0 ? in_position_window_coarse : 4.0 * in_position_window;
+  }
   double jog() const { return jog_velocity > 0.0 ? jog_velocity : max_velocity / 10.0; }
   double jog_not_homed() const {
     return jog_velocity_not_homed > 0.0 ? jog_velocity_not_homed : max_velocity / 100.0;
@@ -292,6 +299,7 @@ struct ControlConfig {
   std::vector<std::string> power_on;        ///< in the dialect's words: "G94", ...
   std::map<std::string, double> variables;  ///< "ERF" -> mm, "MCD" -> 2, ...
   double contour_tolerance = 0.01;          ///< mm
+  ArcFeed arc_feed = ArcFeed::tool_centre;  ///< until a word of the program chooses
   double path_reserve = 1.0;                ///< per cent of the axes' limits, for holds and overrides
   int tool_places = 0;                      ///< of the magazine or turret; 0: T is not compared with it
   int processes = 1;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prints shape and law over one clock beside the law of spans, work by work: times, aims, and what planning
-// costs.
+// costs. With the name of a file it also draws the times as a picture (SVG).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -119,7 +120,52 @@ void Reader::move(const path::Move& move) {
   sample(move.profile.duration(), [&](double t) { return move.position(t, config_.axis_count); });
 }
 
-void row(const Work& work) {
+/// Times of one work, s.
+struct Times {
+  std::string name;
+  double aim, course, spans, optimum;
+};
+
+constexpr double kLeft = 240, kWidth = 560, kRow = 34, kMost = 2.0;  // of a picture
+
+/// Bars from 1, the optimum, on: how much longer the course and the law of spans take; a stroke at the aim.
+void draw(const std::string& file, const std::vector<Times>& works) {
+  const auto place = [](double share) {
+    return kLeft + kWidth * (std::min(share, kMost) - 0.9) / (kMost - 0.9);
+  };
+  std::ofstream out(file);
+  const double height = 50 + kRow * static_cast<double>(works.size());
+  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << kLeft + kWidth + 80 << ' ' << height
+      << "\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#333\">\n<rect width=\"100%\" "
+         "height=\"100%\" "
+         "fill=\"white\"/>\n<text x=\""
+      << kLeft
+      << "\" y=\"14\">time over the best that is found: course (blue), law of spans (grey), aim "
+         "(red)</text>\n";
+  for (double share = 1.0; share <= kMost + 1e-9; share += 0.1)
+    out << "<path d=\"M" << place(share) << " 26V" << height - 8 << "\" stroke=\"#ddd\"/><text x=\""
+        << place(share) << "\" y=\"24\" text-anchor=\"middle\">" << std::round(share * 10) / 10
+        << "</text>\n";
+  double y = 32;
+  for (const Times& w : works) {
+    const auto bar = [&](double seconds, double top, const char* colour) {
+      const double share = seconds / w.optimum;
+      out << "<rect x=\"" << place(0.9) << "\" y=\"" << top << "\" width=\"" << place(share) - place(0.9)
+          << "\" height=\"11\" fill=\"" << colour << "\"/><text x=\"" << place(share) + 4 << "\" y=\""
+          << top + 10 << "\">" << seconds << " s</text>\n";
+    };
+    out << "<text x=\"" << kLeft - 8 << "\" y=\"" << y + 16 << "\" text-anchor=\"end\">" << w.name
+        << "</text>\n";
+    bar(w.course, y, "#1f6fb4");
+    bar(w.spans, y + 12, "#bbb");
+    out << "<path d=\"M" << place(w.aim / w.optimum) << ' ' << y - 2
+        << "v27\" stroke=\"#c22\" stroke-width=\"2\"/>\n";
+    y += kRow;
+  }
+  out << "</svg>\n";
+}
+
+Times row(const Work& work) {
   path::Config spans = work.config;
   spans.law = path::Law::spans;
   const double today = path::estimate(spans, {}, work.program).seconds;
@@ -143,32 +189,38 @@ void row(const Work& work) {
               static_cast<long long>(counts.released), static_cast<long long>(counts.outside),
               static_cast<long long>(counts.failed));
   std::fflush(stdout);
+  return {work.name, aim, seconds, today, work.optimum};
 }
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   const double full = 2.0 * std::numbers::pi;
   std::printf("%-30s %8s %8s  %8s %8s  %8s %9s %7s %8s  %s\n", "seconds", "aim", "course", "spans", "optimum",
               "limits", "blocks/s", "us/knot", "x real", "released / outside / no law");
-  row({"mill: circle R20, one arc", mill(), circle(20, 6000), 1.47, 1.461});
-  row({"mill: circle R20, 1000 blocks", mill(), polygon(20, 1000, full / 1000, 6000), 1.47, 1.461});
-  row({"mill: 100 mm in 1000 blocks", mill(), collinear(1000, 0.1, 6000), 1.21, 1.200});
-  row({"mill: 100 mm in one block", mill(), collinear(1, 100, 6000), 1.21, 1.200});
-  row({"fast: 5000 x 0.1 mm on R200", fast(), polygon(200, 5000, 0.1 / 200, 30000), 1.21, 1.191});
-  row({"mill: 5000 x 0.1 mm on R200", mill(), polygon(200, 5000, 0.1 / 200, 30000), 1.65, 1.614});
-  row({"mill: zigzag 1000 x 0.1 mm", mill(), zigzag(1000, 0.1, 6000), 36.5, 35.30});
-  row({"mill: random walk, 20 000", mill(), random_walk(20000, 6000), 105.0, 97.3});
-  row({"mill: surface in rows", mill(), surface_rows(6000), 0, 17.60});
-  row({"fast: surface in rows", fast(), surface_rows(6000), 0, 10.29});
-  row({"mill: trochoidal slot", mill(), trochoids(6000), 0, 14.03});
-  row({"fast: trochoidal slot", fast(), trochoids(6000), 0, 8.21});
-  row({"mill: engraving", mill(), engraving(6000), 0, 54.22});
-  row({"fast: engraving", fast(), engraving(6000), 0, 31.70});
-  row({"mill: thread helix", mill(), thread_helix(6000), 0, 6.290});
-  row({"fast: thread helix", fast(), thread_helix(6000), 0, 4.616});
-  row({"mill: impeller blade", mill(), impeller(6000), 0, 8.73});
-  row({"fast: impeller blade", fast(), impeller(6000), 0, 7.51});
+  std::vector<Times> times;
+  times.push_back(row({"mill: circle R20, one arc", mill(), circle(20, 6000), 1.47, 1.461}));
+  times.push_back(
+      row({"mill: circle R20, 1000 blocks", mill(), polygon(20, 1000, full / 1000, 6000), 1.47, 1.461}));
+  times.push_back(row({"mill: 100 mm in 1000 blocks", mill(), collinear(1000, 0.1, 6000), 1.21, 1.200}));
+  times.push_back(row({"mill: 100 mm in one block", mill(), collinear(1, 100, 6000), 1.21, 1.200}));
+  times.push_back(
+      row({"fast: 5000 x 0.1 mm on R200", fast(), polygon(200, 5000, 0.1 / 200, 30000), 1.21, 1.191}));
+  times.push_back(
+      row({"mill: 5000 x 0.1 mm on R200", mill(), polygon(200, 5000, 0.1 / 200, 30000), 1.65, 1.614}));
+  times.push_back(row({"mill: zigzag 1000 x 0.1 mm", mill(), zigzag(1000, 0.1, 6000), 36.5, 35.30}));
+  times.push_back(row({"mill: random walk, 20 000", mill(), random_walk(20000, 6000), 105.0, 97.3}));
+  times.push_back(row({"mill: surface in rows", mill(), surface_rows(6000), 0, 17.60}));
+  times.push_back(row({"fast: surface in rows", fast(), surface_rows(6000), 0, 10.29}));
+  times.push_back(row({"mill: trochoidal slot", mill(), trochoids(6000), 0, 14.03}));
+  times.push_back(row({"fast: trochoidal slot", fast(), trochoids(6000), 0, 8.21}));
+  times.push_back(row({"mill: engraving", mill(), engraving(6000), 0, 54.22}));
+  times.push_back(row({"fast: engraving", fast(), engraving(6000), 0, 31.70}));
+  times.push_back(row({"mill: thread helix", mill(), thread_helix(6000), 0, 6.290}));
+  times.push_back(row({"fast: thread helix", fast(), thread_helix(6000), 0, 4.616}));
+  times.push_back(row({"mill: impeller blade", mill(), impeller(6000), 0, 8.73}));
+  times.push_back(row({"fast: impeller blade", fast(), impeller(6000), 0, 7.51}));
   row({"mill: pocket, 40 lines, F6000", mill(), pocket(6000), 0, 0});
   row({"mill: pocket, 40 lines, F1500", mill(), pocket(1500), 0, 0});
+  if (argc > 1) draw(argv[1], times);
 }

@@ -244,6 +244,14 @@ class AxisCheck {
     if (a_.following_error_stop > 0.0 && a_.in_position_window > a_.following_error_stop)
       error("in_position_window", finding::kWindowBeyondFollowing,
             {length(a_.in_position_window), length(a_.following_error_stop)});
+    if (a_.in_position_window_coarse > 0.0) {
+      if (a_.in_position_window_coarse < a_.in_position_window)
+        error("in_position_window_coarse", finding::kCoarseBelowFine,
+              {length(a_.in_position_window_coarse), length(a_.in_position_window)});
+      else if (a_.following_error_stop > 0.0 && a_.in_position_window_coarse > a_.following_error_stop)
+        error("in_position_window_coarse", finding::kCoarseBeyondFollowing,
+              {length(a_.in_position_window_coarse), length(a_.following_error_stop)});
+    }
     if (a_.lead > 0.0 && a_.counts_per_rev > 0 && a_.in_position_window * a_.counts_per_unit() < 1.0)
       error("in_position_window", finding::kWindowBelowCount,
             {text::number(a_.in_position_window, 9) + " " + text::unit_words(a_.unit()),

@@ -170,6 +170,14 @@ inline constexpr text::Entry kWindowBeyondFollowing{
     "machine.window_beyond_following",
     "{0}: in_position_window {1} is above following_error_stop {2}: an exact stop would not wait at all",
     "{0}: in_position_window {1} больше following_error_stop {2}: точный останов вообще не ждал бы"};
+inline constexpr text::Entry kCoarseBelowFine{
+    "machine.coarse_below_fine", "{0}: in_position_window_coarse {1} is below in_position_window {2}",
+    "{0}: in_position_window_coarse {1} меньше in_position_window {2}"};
+inline constexpr text::Entry kCoarseBeyondFollowing{
+    "machine.coarse_beyond_following",
+    "{0}: in_position_window_coarse {1} is above following_error_stop {2}: a coarse stop would not wait at "
+    "all",
+    "{0}: in_position_window_coarse {1} больше following_error_stop {2}: грубый останов вообще не ждал бы"};
 inline constexpr text::Entry kDiameter{"machine.diameter",
                                        "{0}: only a linear axis can be shown as a diameter",
                                        "{0}: в диаметрах показывается только линейная ось"};

@@ -225,6 +225,11 @@ std::span<const Key> axis_keys() {
       key<&C::in_position_window>("in_position_window",
                                   {.unit = Unit::axis_length, .min = 0, .max = kLongest, .above_min = true},
                                   "window of the exact stop", "окно точного позиционирования"),
+      key<&C::in_position_window_coarse>(
+          "in_position_window_coarse",
+          {.unit = Unit::axis_length, .min = 0, .max = kLongest, .computed = true},
+          "window of the coarse exact stop (G602); four times in_position_window",
+          "окно грубого точного останова (G602); четырёхкратное in_position_window"),
       key<&C::in_position_time>("in_position_time", {.unit = Unit::second, .min = 0, .max = 10},
                                 "time inside the window", "время нахождения в окне"),
       key<&C::in_position_timeout>(

@@ -5,6 +5,12 @@
 namespace servogate::machine {
 
 template <>
+std::span<const std::string_view> choices_of<ArcFeed>() {
+  static constexpr std::string_view kNames[] = {"tool-centre", "contour", "inside"};
+  return kNames;
+}
+
+template <>
 const Section& section_of<ControlConfig>() {
   using C = ControlConfig;
   static const Key keys[] = {
@@ -20,6 +26,11 @@ const Section& section_of<ControlConfig>() {
                                  {.unit = Unit::mm, .min = 0, .max = 10, .above_min = true},
                                  "greatest distance between set-points and programmed path",
                                  "наибольшее отклонение заданной траектории от программной"),
+      key<&C::arc_feed>("arc_feed", {},
+                        "what F is the speed of on an arc under radius compensation: the tool's centre, the "
+                        "contour, or the contour on inside radii only",
+                        "чья скорость F на дуге с коррекцией на радиус: центра инструмента, контура или "
+                        "контура только на внутренних радиусах"),
       key<&C::path_reserve>(
           "path_reserve", {.unit = Unit::percent, .min = 0.2, .max = 20},
           "share of the axes' limits that motion through short blocks leaves for a hold: more of it stops "

@@ -361,9 +361,13 @@ TEST(Fault, of_following_names_the_axis_and_stops_the_rest) {
   EXPECT_GT(std::abs(a->value), a->limit);
 }
 
-/// Seconds from when the machine loses its leave to move until it rests, `after` ms behind a change of the
-/// override along short blocks, which are driven as a course.
-double seconds_to_rest(int after, const std::function<void(Rig&)>& lose) {
+bool any_axis(const Rig& rig) { return rig.moving(); }
+bool axis_x(const Rig& rig) { return rig.image().axes[0].moving; }
+
+/// Seconds from when the machine loses its leave to move until what is asked about rests, `after` ms behind a
+/// change of the override along short blocks, which are driven as a course.
+double seconds_to_rest(int after, const std::function<void(Rig&)>& lose,
+                       bool (*moves)(const Rig&) = any_axis) {
   std::string program = "G1 F12000\n";  // at the acceleration of the axes
   for (int k = 1; k <= 400; ++k) {
     const double a = 2 * std::numbers::pi * k / 200;
@@ -377,9 +381,12 @@ double seconds_to_rest(int after, const std::function<void(Rig&)>& lose) {
   rig.run(0.001 * after);
   lose(rig);
   const double began = rig.now();
+  EXPECT_TRUE(rig.until([&] { return !moves(rig); }, 5.0));
+  const double seconds = rig.now() - began;
   EXPECT_TRUE(rig.until([&] { return !rig.moving(); }, 5.0));
+  EXPECT_TRUE(rig.until([&] { return rig.state() != ProcessState::running; }, 5.0)) << rig.alarm_list();
   EXPECT_EQ(rig.violations(), "");
-  return rig.now() - began;
+  return seconds;
 }
 
 TEST(EmergencyStop, along_a_course_never_waits_for_a_change_of_rate) {
@@ -390,6 +397,24 @@ TEST(EmergencyStop, along_a_course_never_waits_for_a_change_of_rate) {
     EXPECT_LE(seconds_to_rest(after, [](Rig& rig) { rig.logic.power_on = false; }), stop + 0.13) << after;
   }
   EXPECT_GE(seconds_to_rest(0, [](Rig& rig) { rig.ask(RequestKind::hold); }), stop + 0.13);
+}
+
+TEST(LimitSwitch, along_a_course_stops_its_axis_without_waiting_for_a_change_of_rate) {
+  const double stop = kLimits.velocity * 0.4 / kLimits.acceleration + kLimits.acceleration / kLimits.jerk;
+  for (const int after : {0, 5, 60, 150, 300})
+    EXPECT_LE(seconds_to_rest(
+                  after, [](Rig& rig) { rig.logic.limit_plus[0] = true; }, axis_x),
+              stop + 0.13)
+        << after;
+}
+
+TEST(LostEnable, along_a_course_stops_its_axis_without_waiting_for_a_change_of_rate) {
+  const double stop = kLimits.velocity * 0.4 / kLimits.acceleration + kLimits.acceleration / kLimits.jerk;
+  for (const int after : {0, 5, 60, 150, 300})
+    EXPECT_LE(seconds_to_rest(
+                  after, [](Rig& rig) { rig.logic.axis_enable[0] = false; }, axis_x),
+              stop + 0.13)
+        << after;
 }
 
 TEST(EmergencyStop, during_motion_ramps_down_takes_the_power_at_rest_and_gives_it_back_only_when_asked) {

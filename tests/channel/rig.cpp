@@ -94,7 +94,10 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
   k.set_bit(field(image::kMachineFields, "estop_ok", image::kMachineBase), estop_ok);
   k.set_bit(field(image::kMachineFields, "power_on", image::kMachineBase), estop_ok && power_on);
   for (int a = 0; a < kAxes; ++a) {
-    k.set_bit(image::at(field(image::kAxisFields, "enable"), image::axis_base(a)), true);
+    k.set_bit(image::at(field(image::kAxisFields, "enable"), image::axis_base(a)),
+              axis_enable[static_cast<std::size_t>(a)]);
+    k.set_bit(image::at(field(image::kAxisFields, "limit_plus"), image::axis_base(a)),
+              limit_plus[static_cast<std::size_t>(a)]);
     k.set_bit(image::at(field(image::kAxisFields, "feed_enable"), image::axis_base(a)),
               axis_feed_enable[static_cast<std::size_t>(a)]);
   }

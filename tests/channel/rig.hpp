@@ -56,7 +56,8 @@ class TestLogic final : public image::Logic {
   bool acknowledge_s = true, acknowledge_t = true, acknowledge_h = true;
   bool estop_ok = true, power_on = true, feed_enable = true, read_in_enable = true, optional_stop = false,
        dry_run = false;
-  std::array<bool, kAxes> axis_feed_enable{true, true, true};
+  std::array<bool, kAxes> axis_feed_enable{true, true, true}, axis_enable{true, true, true};
+  std::array<bool, kAxes> limit_plus{};
   int feed_override = 0, spindle_override = 0, skip_levels = 0;
   bool spindle_enable = true;
   bool start_bit = false, stop_bit = false, reset_bit = false;

@@ -28,7 +28,7 @@ Scenario scenario(std::uint64_t seed) {
 }
 
 TEST(RandomPrograms, keep_every_limit_the_tolerance_and_the_end_point_whatever_happens) {
-  const std::uint64_t base = servogate::test::property_seed();
+  const std::uint64_t base = servogate::test::property_seed("SERVOGATE_MOTION_SEED");
   int wrong = 0;
   Worst reached;
   std::size_t cycles = 0;

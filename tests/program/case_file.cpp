@@ -103,8 +103,12 @@ class Reader {
       case_.machine.axes.clear();
       for (const auto& letter : words_of(value)) case_.machine.axes.push_back(axis(letter));
     } else if (name[0] == "travel" || name[0] == "rapid" || name[0] == "acceleration" ||
-               name[0] == "window_max") {
+               name[0] == "window_max" || name[0] == "window_coarse") {
       limits(name, words_of(value));
+    } else if (name[0] == "arc_feed") {
+      const std::map<std::string, ArcFeed> names = {
+          {"tool-centre", ArcFeed::tool_centre}, {"contour", ArcFeed::contour}, {"inside", ArcFeed::inside}};
+      case_.machine.arc_feed = names.at(value);
     } else if (name[0] == "power_on") {
       case_.machine.power_on = words_of(value);
     } else if (name[0] == "start") {
@@ -175,6 +179,7 @@ class Reader {
       if (name.size() != 2 || axis.letter != name[1]) continue;
       if (name[0] == "rapid") axis.rapid = std::stod(values.at(0));
       if (name[0] == "window_max") axis.window_max = std::stod(values.at(0));
+      if (name[0] == "window_coarse") axis.window_coarse = std::stod(values.at(0));
       if (name[0] == "acceleration") {
         axis.acceleration = std::stod(values.at(0));
         axis.jerk = std::stod(values.at(1));

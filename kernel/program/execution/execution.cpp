@@ -81,6 +81,7 @@ Execution::Execution(const Dialect& dialect, MachineModel machine, Tables tables
 
 /// Origin, mirror, rotation, scale, field and modes as after power-on; tool lengths and parameters stay.
 void Execution::reset() {
+  state_.motion.arc_feed = machine_.arc_feed;
   frames_.reset();
   state_.modes.corner = dialect_.corner;
   motion_.end_profile();

@@ -188,8 +188,8 @@ class Execution : public ValueSource {
   Capability capability_{dialect_,     machine_,      block_,        flow_,
                          state_.modes, state_.frames, state_.motion, data_.warnings};
   Output output_{data_.queue, flow_, block_, data_.process, state_};
-  Contour contour_{dialect_, machine_,       flow_,       state_.frames,
-                   frames_,  state_.contour, data_.queue, data_.process};
+  Contour contour_{dialect_,       machine_,    flow_,         state_.frames,         frames_,
+                   state_.contour, data_.queue, data_.process, state_.motion.arc_feed};
   Motion motion_{dialect_,      machine_, block_,      numbers_, state_.modes, state_.frames,
                  state_.motion, frames_,  capability_, output_,  contour_};
 };

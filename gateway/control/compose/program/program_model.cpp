@@ -28,6 +28,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
     axis.acceleration = a.max_acceleration;
     axis.jerk = a.max_jerk;
     axis.window_max = a.following_error_stop;
+    axis.window_coarse = a.coarse_window();
     model.axes.push_back(axis);
   }
   model.spindles =
@@ -39,6 +40,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
   }
   model.tool_places = machine.control.tool_places;
   model.contour_tolerance_mm = machine.control.contour_tolerance;
+  model.arc_feed = static_cast<program::ArcFeed>(machine.control.arc_feed);
   model.k_bytes = static_cast<std::uint32_t>(machine.control.k_size);
   model.syvar_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
   model.power_on = machine.control.power_on;

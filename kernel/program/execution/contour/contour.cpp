@@ -58,6 +58,19 @@ double share(const ContourElement& e, Point point) {
   throw ProgramError{&entry(fault), place.column, std::move(arguments), place.line};
 }
 
+/// The tool's centre takes as long for its arc as the feed takes for the programmed one.
+Feed scaled(const ContourElement& e, double radius, double across) {
+  const double programmed = distance(e.start, e.centre);
+  const bool inside = radius < programmed;
+  if (e.feed_of == ArcFeed::tool_centre || e.left == 0.0 || e.feed.unit == FeedUnit::inverse_time ||
+      (e.feed_of == ArcFeed::inside && !inside))
+    return e.feed;
+  const double turn = std::abs(e.sweep_deg) * kDegree;
+  Feed feed = e.feed;
+  feed.value *= std::hypot(radius * turn, across) / std::hypot(programmed * turn, across);
+  return feed;
+}
+
 std::string millimetres(double value) { return text::number(value, 4); }
 
 }  // namespace
@@ -101,6 +114,7 @@ void Contour::hold(ContourElement element, Point from) {
 }
 
 void Contour::take(ContourElement e) {
+  e.feed_of = arc_feed_;
   if (!state_.engaged()) state_.last = position(at_.machine);
   const bool flat = !e.arc && same(e.start, e.end);
   if (state_.mode == ContourState::Mode::entering && (e.in_plane || e.arc)) {
@@ -269,6 +283,15 @@ void Contour::give_line(const ContourElement& e, Point end, const Position& to) 
   e.rapid ? emit(e.place, Rapid{to}) : emit(e.place, Line{to, e.feed, e.corner});
 }
 
+/// Way of the axes across the plane to `to`, mm.
+double Contour::across(const Position& to) const {
+  double sum = 0.0;
+  for (int axis = 0; axis < machine_.real_axes(); ++axis)
+    if (axis != at_.axis1 && axis != at_.axis2 && !machine_.rotary(axis))
+      sum += std::pow(to[at(axis)] - state_.last[at(axis)], 2);
+  return std::sqrt(sum);
+}
+
 void Contour::give_arc(const ContourElement& e, Point end, const Position& to) {
   const double sense = e.sweep_deg < 0.0 ? -1.0 : 1.0;
   const double radius = distance(e.start, e.centre) - sense * e.left;
@@ -290,7 +313,7 @@ void Contour::give_arc(const ContourElement& e, Point end, const Position& to) {
   arc.center1 = e.centre.x;
   arc.center2 = e.centre.y;
   arc.sweep_deg = sweep;
-  arc.feed = e.feed;
+  arc.feed = scaled(e, radius, across(to));
   arc.corner = e.corner;
   if (at_.zones_active) frames_.check_zones(state_.last, arc, e.place.column);
   emit(e.place, std::move(arc));

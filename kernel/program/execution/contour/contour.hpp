@@ -13,7 +13,8 @@ namespace servogate::program {
 class Contour {
  public:
   Contour(const Dialect& dialect, const MachineModel& machine, const Flow& flow, FramesState& at,
-          Frames& frames, ContourState& state, CommandQueue& queue, const int& process)
+          Frames& frames, ContourState& state, CommandQueue& queue, const int& process,
+          const ArcFeed& arc_feed)
       : dialect_(dialect),
         machine_(machine),
         flow_(flow),
@@ -21,7 +22,8 @@ class Contour {
         frames_(frames),
         state_(state),
         queue_(queue),
-        process_(process) {}
+        process_(process),
+        arc_feed_(arc_feed) {}
 
   /// Nothing is kept back, and nothing has to be: a motion can be given as it is.
   bool idle() const { return !state_.engaged() && !state_.shifted() && !corner_ahead(); }
@@ -75,6 +77,7 @@ class Contour {
   void give_line(const ContourElement& element, Point end, const Position& to);
   void give_arc(const ContourElement& element, Point end, const Position& to);
   void release(Point at);
+  double across(const Position& to) const;
   template <typename What>
   void emit(const Place& place, What&& what);
   void check(const ContourElement& element, int axis, double value) const;
@@ -87,6 +90,7 @@ class Contour {
   ContourState& state_;
   CommandQueue& queue_;
   const int& process_;
+  const ArcFeed& arc_feed_;
 };
 
 }  // namespace servogate::program

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernel/program/commands/canonical.hpp"
+#include "kernel/program/execution/state/machine.hpp"
 #include "kernel/program/geometry/circle.hpp"
 #include "kernel/program/geometry/directed.hpp"
 
@@ -29,6 +30,7 @@ struct ContourElement {
   Position to{};      ///< of all axes, as programmed
   double left = 0.0;  ///< of the tool's centre, mm, + left of the element
   Feed feed;
+  ArcFeed feed_of = ArcFeed::tool_centre;
   CornerRule corner;
   Place place;
 };

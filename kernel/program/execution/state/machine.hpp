@@ -12,6 +12,13 @@
 
 namespace servogate::program {
 
+/// What the programmed feed of a compensated arc is the speed of. Straight lines do not know the difference.
+enum class ArcFeed : std::uint8_t {
+  tool_centre,  ///< of the tool's centre: faster than F at the wall of an inside radius
+  contour,      ///< of the programmed contour, on inside and outside radii
+  inside,       ///< of the contour on inside radii, of the tool's centre on outside ones
+};
+
 /// What an interpreter must know of the machine. Filled from the machine file by the gateway.
 struct MachineModel {
   struct Axis {
@@ -23,11 +30,12 @@ struct MachineModel {
     double rapid = 0.0;                          ///< largest speed, mm/s or degrees/s; 0: not known
     double acceleration = 0.0;                   ///< mm/s2 or degrees/s2; 0: not known
     double jerk = 0.0;                           ///< mm/s3 or degrees/s3; 0: not known
-    double window_max = 0.0;  ///< largest in-position window of a program, mm or degrees; 0: not known
-    int process = 0;          ///< whose programs move it, from 0
-    bool endless = false;     ///< rotary without ends of travel
-    bool is_virtual = false;  ///< no axis of the machine: programs name it while real ones follow it
-    int index_positions = 0;  ///< programs count positions, so many in a turn; 0: they give degrees
+    double window_max = 0.0;     ///< largest in-position window of a program, mm or degrees; 0: not known
+    double window_coarse = 0.0;  ///< in-position window of the coarse exact stop, mm or degrees
+    int process = 0;             ///< whose programs move it, from 0
+    bool endless = false;        ///< rotary without ends of travel
+    bool is_virtual = false;     ///< no axis of the machine: programs name it while real ones follow it
+    int index_positions = 0;     ///< programs count positions, so many in a turn; 0: they give degrees
   };
   std::vector<Axis> axes;
   int spindles = 1;
@@ -35,6 +43,7 @@ struct MachineModel {
   double spindle_max_rpm = 0.0;  ///< 0: not known, S is not compared with it
   int tool_places = 0;           ///< of the magazine or turret: T takes 0 to this number; 0: not known
   double contour_tolerance_mm = 0.01;
+  ArcFeed arc_feed = ArcFeed::tool_centre;  ///< until a word of the program chooses
   /// Power-on modes and values in the dialect's own words, e.g. {"G94", "G97", "G90", "G71"}; the values of
   /// its variables by their names.
   std::vector<std::string> power_on;

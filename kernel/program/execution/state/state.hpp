@@ -137,7 +137,8 @@ struct MotionState {
   double max_angle_deg = 0.0;  ///< a sharper corner stops
   double allowance = 0.0;      ///< mm
   bool dry_run = false;        ///< feed motions at rapid speed
-  bool profile_open = false;   ///< inside of a running chain of feed blocks without a stop
+  ArcFeed arc_feed = ArcFeed::tool_centre;
+  bool profile_open = false;  ///< inside of a running chain of feed blocks without a stop
   Cycle cycle;
 };
 

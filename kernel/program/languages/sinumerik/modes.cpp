@@ -15,4 +15,27 @@ void new_feed(Execution& run, BlockWords&, const Word&) {
   before = now;
 }
 
+namespace {
+
+void windows(Execution& run, const Word& word, const char* name, bool coarse) {
+  if (word.column == 0) fail(Fault::power_on_for_block, 0, {name});
+  InPosition wanted;
+  for (int axis = 0; axis < run.machine().real_axes(); ++axis) {
+    wanted.axes |= 1u << axis;
+    if (coarse)
+      wanted.window[static_cast<std::size_t>(axis)] =
+          run.machine().axes[static_cast<std::size_t>(axis)].window_coarse;
+  }
+  run.emit(wanted);
+}
+
+}  // namespace
+
+void fine_stop(Execution& run, BlockWords&, const Word& word) { windows(run, word, "G601", false); }
+void coarse_stop(Execution& run, BlockWords&, const Word& word) { windows(run, word, "G602", true); }
+
+void feed_of_contour(Execution& run, const Word&) { run.state().motion.arc_feed = ArcFeed::contour; }
+void feed_of_centre(Execution& run, const Word&) { run.state().motion.arc_feed = ArcFeed::tool_centre; }
+void feed_of_inside(Execution& run, const Word&) { run.state().motion.arc_feed = ArcFeed::inside; }
+
 }  // namespace servogate::program::sinumerik

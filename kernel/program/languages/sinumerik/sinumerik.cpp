@@ -64,8 +64,9 @@ constexpr GRule kG[] = {
     {.number = 348, .group = 'o', .function = Function::later},
     {.number = 450, .group = 'k', .function = Function::nothing},
     {.number = 451, .group = 'k', .function = Function::later},
-    {.number = 601, .group = 'x', .function = Function::nothing},
-    {.number = 602, .group = 'x', .function = Function::later},
+    {.number = 601, .group = 'x', .function = Function::nothing, .take = fine_stop},
+    {.number = 602, .group = 'x', .function = Function::nothing, .take = coarse_stop},
+    {.number = 603, .group = 'x', .function = Function::later},
 };
 
 constexpr MRule kM[] = {

@@ -32,6 +32,13 @@ void lengths_only(Execution& run, BlockWords& words, const Word& word);
 void with_feeds(Execution& run, BlockWords& words, const Word& word);
 /// Another unit of the feed: F has to be programmed anew.
 void new_feed(Execution& run, BlockWords& words, const Word& word);
+/// G601 and G602: which window of an axis ends an exact stop, from this block on.
+void fine_stop(Execution& run, BlockWords& words, const Word& word);
+void coarse_stop(Execution& run, BlockWords& words, const Word& word);
+/// CFC, CFTCP and CFIN: what F is the speed of on an arc under radius compensation.
+void feed_of_contour(Execution& run, const Word& word);
+void feed_of_centre(Execution& run, const Word& word);
+void feed_of_inside(Execution& run, const Word& word);
 
 Expressions expressions();
 ParameterSet parameters();
