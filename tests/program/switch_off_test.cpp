@@ -10,6 +10,7 @@
 #include "kernel/program/execution/execution.hpp"
 #include "kernel/program/languages/fenix/fenix.hpp"
 #include "kernel/program/languages/nc110/nc110.hpp"
+#include "kernel/program/languages/sinumerik/iso/iso.hpp"
 #include "tests/places/places.hpp"
 #include "tests/program/case_file.hpp"
 
@@ -113,6 +114,17 @@ constexpr Switch kFenixSwitches[] = {
     {"61", "H"},     {"53", "~"},     {"52", "$"},
 };
 
+/// Of the ISO dialect as milling has it; its cases begin with G291.
+constexpr Switch kIsoSwitches[] = {
+    {"41", "G0"},   {"43", "G1"},   {"44", "G2"},   {"49", "G3"},   {"116", "G4"},  {"155", "G9"},
+    {"156", "G61"}, {"59", "G28"},  {"62", "G27"},  {"63", "G30"},  {"91", "G53"},  {"92", "G92"},
+    {"94", "G54"},  {"97", "G52"},  {"101", "G68"}, {"109", "G51"}, {"117", "G16"}, {"107", "G20"},
+    {"125", "G43"}, {"126", "G44"}, {"128", "G41"}, {"129", "G42"}, {"136", "G10"}, {"235", "G81"},
+    {"236", "G82"}, {"237", "G83"}, {"231", "G73"}, {"233", "G76"}, {"240", "G85"}, {"241", "G86"},
+    {"242", "G87"}, {"243", "G89"}, {"180", "G65"}, {"182", "G66"}, {"147", "M0"},  {"149", "M30"},
+    {"142", "M19"}, {"173", "G31"}, {"23", "G93"},  {"24", "G95"},  {"106", "G91"}, {"238", "G84"},
+};
+
 void judge(const Dialect& dialect, const std::string& folder, std::span<const Switch> switches) {
   std::map<std::string, std::vector<CaseFile>> cases;
   for (const std::string& path : case_paths(servogate::tests::source_dir() + folder)) {
@@ -131,6 +143,13 @@ void judge(const Dialect& dialect, const std::string& folder, std::span<const Sw
 
 TEST(SwitchedOff, a_word_of_the_language_changes_the_outcome_of_a_case_that_proves_its_row) {
   judge(nc110::dialect(), "/tests/program/nc110", kSwitches);
+}
+
+/// A case of turning, or of the Siemens mode, is no other without a word of milling.
+TEST(SwitchedOff, a_word_of_the_ISO_dialect_changes_the_outcome_of_a_case_that_proves_its_row) {
+  MachineModel mill;
+  mill.kind = MachineModel::Kind::milling;
+  judge(sinumerik::iso::dialect(mill), "/tests/program/sinumerik", kIsoSwitches);
 }
 
 TEST(SwitchedOff, a_word_of_Fenix_changes_the_outcome_of_a_case_that_proves_its_row) {

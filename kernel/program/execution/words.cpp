@@ -121,7 +121,7 @@ void Execution::refuse_in_contour(const BlockWords& words) const {
     fail(Fault::contour_excludes, static_cast<int>(block_.body) + 1, {name_of(Function::machine_zero)});
   for (const Word* word : {words.speed, words.tool, words.corrector, words.h, words.cycle_word}) refuse(word);
   for (const Word* word : words.factor) refuse(word);
-  if (!contour_.compensates()) return;
+  if (!contour_.compensates() || dialect_.side_changes) return;
   for (int i = 0; i < words.m_count; ++i) refuse(words.m[static_cast<std::size_t>(i)]);
 }
 

@@ -168,7 +168,11 @@ void Contour::join(ContourElement next) {
     release(entry);
     return hold(std::move(next), entry);
   }
-  const CornerWord word = std::exchange(state_.corner, CornerWord{});
+  CornerWord word = std::exchange(state_.corner, CornerWord{});
+  // A language whose corner stands in the block of its element gives no sense: it is that of the turn.
+  if (dialect_.corner_word == nullptr && word.kind == CornerWord::Kind::radius &&
+      cross(direction(first, first.end), direction(next, next.start)) < 0.0)
+    word.value = -word.value;
   if (word.kind == CornerWord::Kind::none || word.kind == CornerWord::Kind::rolled)
     return pass(first, next, word.kind == CornerWord::Kind::rolled);
   ContourElement one = first;

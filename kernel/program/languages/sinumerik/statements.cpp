@@ -3,6 +3,7 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/languages/sinumerik/iso/iso.hpp"
 #include "kernel/program/languages/sinumerik/sinumerik.hpp"
 
 namespace servogate::program::sinumerik {
@@ -162,6 +163,18 @@ void diameter_absolute(Execution& run, const Word&) {
 }
 void radius(Execution& run, const Word&) { run.state().modes.across = Function::radius; }
 
+void nothing(Execution&, const Word&) {}
+
+/// SETAL(61000)
+void read_alarm(BlockText& text, Word& word) {
+  if (text.peek() != '(') fail(Fault::expected, text.column(), {"("});
+  text.bracketed(word.value);
+}
+
+void raise_alarm(Execution&, const Word& word) {
+  fail(iso::Wrong::user_alarm, word.column, {text::number(word.value.number)});
+}
+
 /// PROC NAME SAVE DISPLOF: what the caller displays is no matter of the program.
 void read_proc(BlockText& text, Word& word) {
   word.text_begin = word.text_end = 0;
@@ -226,10 +239,12 @@ constexpr WordRule kWords[] = {
     {.name = "BRISK"},
     {.name = "FFWON"},
     {.name = "FFWOF"},
-    {.name = "COMPON"},
-    {.name = "COMPCURV"},
-    {.name = "COMPCAD"},
-    {.name = "COMPOF"},
+    // Runs of short lines are smoothed within the contour tolerance whatever these words say.
+    {.name = "COMPON", .run = nothing},
+    {.name = "COMPCURV", .run = nothing},
+    {.name = "COMPCAD", .run = nothing},
+    {.name = "COMPOF", .run = nothing},
+    {.name = "SETAL", .read = read_alarm, .run = raise_alarm},
     {.name = "PROC", .read = read_proc, .run = begin_proc},
     {.name = "EXTERN"},
     {.name = "DEF"},

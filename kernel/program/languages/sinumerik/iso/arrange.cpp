@@ -43,6 +43,40 @@ std::uint32_t look(Execution& run, BlockWords& words) {
   return letters;
 }
 
+/// MD20250: so many blocks without motion in the plane stand between two of a compensated contour.
+void count_dummy_blocks(Execution& run, const BlockWords& words) {
+  const FramesState& frames = run.state().frames;
+  double& blocks = value(run.state(), own::dummy_blocks);
+  const bool moves =
+      words.axis[at(frames.axis1)] != nullptr || words.axis[at(frames.axis2)] != nullptr || words.has_centres;
+  blocks = moves ? 0.0 : blocks + 1.0;
+  const double most = setting(run, "MD20250");
+  if (blocks > most)
+    fail(Fault::contour_behind, static_cast<int>(run.block().body) + 1, {text::number(most)});
+}
+
+/// U beside X in the block of a plane: axes are not exchanged.
+void judge_plane(const Execution& run, const BlockWords& words) {
+  const Block& block = run.block();
+  const Word* plane = nullptr;
+  for (std::size_t i = 0; i < block.count; ++i)
+    if (const GRule* g = block.words[i].g;
+        g != nullptr && g->function >= Function::plane_12 && g->function <= Function::plane_23)
+      plane = &block.words[i];
+  if (plane == nullptr || words.axes == 0) return;
+  constexpr std::string_view kMain = "XYZ", kParallel = "UVW";
+  for (std::size_t i = 0; i < kMain.size(); ++i) {
+    const int one = run.axes().find(kMain[i]), other = run.axes().find(kParallel[i]);
+    if (one < 0 || other < 0 || words.axis[at(other)] == nullptr) continue;
+    const Word& word = *words.axis[at(other)];
+    if (words.axis[at(one)] != nullptr)
+      fail(Wrong::plane_parallel, word.column,
+           {word_text(run.dialect(), block, *plane), std::string(1, kMain[i]), std::string(1, kParallel[i])});
+    fail(Fault::not_executed, word.column,
+         {word_text(run.dialect(), block, *plane) + " " + word_text(run.dialect(), block, word)});
+  }
+}
+
 constexpr std::uint32_t kSeldom = bit_of('P') | bit_of('Q') | bit_of('L') | bit_of('H') | bit_of('D') |
                                   bit_of('E') | bit_of('O') | bit_of('T') | bit_of('M');
 
@@ -68,6 +102,8 @@ void arrange(Execution& run, BlockWords& words) {
   }
   arrange_hole(run, words);
   arrange_turning(run, words);
+  if ((letters & (bit_of('U') | bit_of('V') | bit_of('W'))) != 0 && !run.machine().turns())
+    judge_plane(run, words);
   arrange_transformation(run, words);
   if (words.instead == nullptr) {
     arrange_polar(run, words);
@@ -81,6 +117,7 @@ void arrange(Execution& run, BlockWords& words) {
       taken |= bit_of('P');
     words.for_instead = stray_left(words, letters, taken);
   }
+  if (run.contour().engaged()) count_dummy_blocks(run, words);
   const bool calls = value(state, own::macro) != 0.0 && words.axes > 0 && words.instead == nullptr;
   if (calls && !is_macro_program(run, 2.0)) arrange_calls(run, words);
 }

@@ -254,7 +254,8 @@ void judge(const Judgement& reading, const Block& block) {
   for (std::size_t i = 0; i < block.count; ++i) {
     const Word& word = block.words[i];
     const bool sub = word.meaning == Meaning::m && word.value.number == 98.0;
-    const bool macro = word.g != nullptr && (word.g->motion == call_macro || word.g->motion == modal_macro);
+    const bool macro = word.g != nullptr && (word.g->motion == call_macro || word.g->motion == modal_macro ||
+                                             word.g->motion == copy_turned || word.g->motion == copy_shifted);
     if (!sub && !macro) continue;
     const bool split = sub && !eight && find(block, 'L') == nullptr;
     const int named = split ? number % kSplit : number;

@@ -109,7 +109,7 @@ constexpr Row kRows[] = {
     {kOnce, all(5), Function::own, fast_call},
     {kOnce, all(point(5, 1)), Function::own, ignored},
     {kOnce, all(point(7, 1)), Function::own, cylinder},
-    {kOnce, mill(8), Function::later},
+    {kOnce, mill(8), Function::own, look_ahead},
     {kOnce, mill(9), Function::exact_once},
     {kOnce, all(10), Function::own, write_data},
     {kOnce, mill(11), Function::own, ignored},

@@ -56,8 +56,9 @@ constexpr text::Entry kMessages[] = {
     {"P872", "{0}: at most {1} of the words {2}", "{0}: слов {2} не больше {1}"},
     {"P873", "{0} = {1}: this version has {2} alone", "{0} = {1}: в этой версии есть только {2}"},
     {"P874, 14011", "{0} has no contour in a typed block", "{0}: во введённом кадре контура нет"},
+    {"P875", "the program ends with its alarm {0}", "программа завершается своим сообщением {0}"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::contour_mdi) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::user_alarm) + 1);
 
 }  // namespace
 

@@ -47,6 +47,7 @@ enum class Wrong {
   macro_argument,
   setting_choice,
   contour_mdi,
+  user_alarm,
 };
 
 std::span<const text::Entry> messages();

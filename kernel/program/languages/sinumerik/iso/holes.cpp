@@ -58,6 +58,16 @@ int clamp_of(const Execution& run, const BlockWords& words) {
   return -1;
 }
 
+/// At rapid to the words of the block; polar ones count anew at each repeat.
+void to_place(Execution& run, const BlockWords& words, int axis) {
+  if (value(run.state(), own::polar) == 0.0) return run.motion().position(words, axis);
+  const Block written = run.block();
+  BlockWords place = words;
+  arrange_polar(run, place);
+  run.motion().position(place, axis);
+  run.block() = written;
+}
+
 void drill(Execution& run, const BlockWords& words) {
   State& state = run.state();
   const bool turns = run.machine().turns();
@@ -85,7 +95,7 @@ void drill(Execution& run, const BlockWords& words) {
   const int clamp = turns ? clamp_of(run, words) : -1;
   const bool places = words.axes > (words.axis[at(hole.axis)] != nullptr ? 1 : 0);
   for (int i = 0; i < hole.repeats; ++i) {
-    if (places) run.motion().position(words, hole.axis);
+    if (places) to_place(run, words, hole.axis);
     if (clamp >= 0) run.emit(MFunction{clamp, false});
     turns ? turned_hole(run, hole) : milled_hole(run, hole);
     run.motion().go(hole.axis, value(state, own::to_r) != 0.0 ? hole.level : hole.initial, true);

@@ -18,6 +18,7 @@ namespace own {
 inline constexpr std::size_t kAxes = image::kMaxAxes;
 enum : std::size_t {
   feed_unit,      ///< of the Siemens mode, too
+  dummy_blocks,   ///< in a compensated contour, since its last motion in the plane
   variable_lead,  ///< G34 is in force, not G32
   to_r,           ///< G99: drilling cycles end at the level R
   turning_cycle,  ///< a Simple, 0: none
@@ -156,6 +157,7 @@ void thread(Execution& run, const BlockWords& words);
 double start_angle(Execution& run);
 void measure(Execution& run, const BlockWords& words);
 void ignored(Execution& run, const BlockWords& words);
+void look_ahead(Execution& run, const BlockWords& words);
 void to_initial(Execution& run, BlockWords& words, const Word& word);
 void to_level(Execution& run, BlockWords& words, const Word& word);
 void spindle_dwell(Execution& run, double rotations, int column);

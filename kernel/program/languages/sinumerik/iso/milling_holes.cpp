@@ -100,14 +100,19 @@ void milled_hole(Execution& run, const Hole& hole) {
   Boring work;
   work.name = hole.name;
   work.axis = hole.axis;
-  work.approach = work.retreat = hole.level;
+  const double clearance = setting(run, "ZSFR0") * (hole.depth < hole.level ? 1.0 : -1.0);
+  work.approach = work.retreat = hole.level + clearance;
   work.depth = hole.depth;
   work.stops = hole.g == 86;
   if (hole.g == 82 || hole.g == 89) work.dwell_bottom_s = hole.dwell_s;
   if (hole.g == 85 || hole.g == 89) work.back_feed = run.state().motion.feed;
-  if (hole.g == 73 && hole.step > 0.0) work.chips = {.on = true, .pass = hole.step, .back = breaking(run)};
+  if (hole.g == 73 && hole.step > 0.0) {
+    work.first = hole.step + std::abs(clearance);
+    work.chips = {.on = true, .pass = hole.step, .back = breaking(run)};
+  }
   if (hole.g == 83 && hole.step > 0.0) {
-    work.first = work.next = hole.step;
+    work.first = hole.step + std::abs(clearance);
+    work.next = hole.step;
     work.reentry = reentry(run, hole.depth - hole.level);
   }
   bore(run, work);

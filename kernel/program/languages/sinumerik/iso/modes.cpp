@@ -19,6 +19,13 @@ void to_siemens(Execution& run, const BlockWords& words) {
 
 void ignored(Execution&, const BlockWords&) {}
 
+/// G08 P1 and P0: the path is looked ahead on in either case.
+void look_ahead(Execution& run, const BlockWords& words) {
+  only(run, "P");
+  if (const int p = whole(run, 'P', 1); p > 1)
+    fail(Wrong::letter_range, column(words), {"G08", "P", std::to_string(p), "0, 1"});
+}
+
 void another_feed(Execution& run, BlockWords& words, const Word& word) { new_feed(run, words, word); }
 
 /// Ends what lasts of the cycles.

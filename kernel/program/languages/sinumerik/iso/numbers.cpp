@@ -16,7 +16,10 @@ Factors factors_of(const Execution& run) {
   Factors f{(inch ? 0.0001 : 0.001) * finest, 0.001 * finest, 1.0};
   const bool turns = run.machine().turns();
   const bool lead = turns && state.modes.motion == Function::thread;
-  if (lead || (turns && bit(run, 8) && state.modes.feed == Function::feed_revolution))
+  const double hole = value(state, own::hole);
+  const bool taps = turns && bit(run, 9) && (hole == 84.0 || hole == 88.0);
+  if (lead || (taps && state.modes.feed == Function::feed_revolution) ||
+      (turns && bit(run, 8) && state.modes.feed == Function::feed_revolution))
     f.feed = inch ? 0.000001 : 0.0001;
   else if (state.modes.feed == Function::feed_revolution)
     f.feed = inch ? 0.0001 : 0.01;

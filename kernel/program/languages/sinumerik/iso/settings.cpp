@@ -36,6 +36,7 @@ constexpr Setting kSettings[] = {
     {"SD43120_X", 1, -kAny, kAny},   // scaling factor of an axis
     {"SD43120_Y", 1, -kAny, kAny},
     {"SD43120_Z", 1, -kAny, kAny},
+    {"SD42940", 0, 0, 17},   // 17: the length of a tool acts along Z in every plane
     {"SD43240", 0, 0, 360},  // angle of M19
     {"ZSFI0", 0, 0, 1},      // 1: Z is the drilling axis
     {"ZSFI1", 0, 0, 3},      // deep tapping: 2 breaks, 3 removes chips
@@ -53,6 +54,7 @@ constexpr Setting kSettings[] = {
     {"ZSFI32", 0, -kAny, kAny},  // G73: escapes in 0.001 mm, passes
     {"ZSFI33", 0, -kAny, kAny},
     {"ZSFI34", 1, 1, 9999},
+    {"ZSFI39", 1, 0, 2},     // G-code system of the cycles: that of MD10881
     {"ZSFR0", 0, 0, 1000},   // safety clearance
     {"ZSFR1", 0, 0, 1000},   // retract that breaks chips, 0: 1 mm or inch
     {"ZSFR2", 0, 0, 360},    // angle of the tip

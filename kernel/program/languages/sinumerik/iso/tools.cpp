@@ -20,7 +20,8 @@ const Tables::Corrector* row_of(const Execution& run, int number) {
 /// The length of a row acts along the axis across the plane.
 void use_length(Execution& run, int column) {
   State& state = run.state();
-  const int axis = state.frames.normal, number = static_cast<int>(value(state, own::length_row));
+  const int axis = setting(run, "SD42940") == 17.0 ? run.axes().find('Z') : state.frames.normal;
+  const int number = static_cast<int>(value(state, own::length_row));
   if (axis < 0) return;
   const Tables::Corrector* row = row_of(run, number);
   if (number != 0 && row == nullptr && column > 0)
