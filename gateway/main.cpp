@@ -19,9 +19,9 @@ using namespace servogate::gateway;
 const servogate::text::Entry kFailed{"cli.failed", "{0}", "{0}"};
 
 /// They only read, and nothing goes on when they end.
-constexpr std::array<std::string_view, 10> kNothingToStop = {"backup",   "restore", "version", "check",
-                                                             "canon",    "replay",  "plc run", "plc check",
-                                                             "plc test", "plc list"};
+constexpr std::array<std::string_view, 11> kNothingToStop = {"backup",    "capture",  "restore", "version",
+                                                             "check",     "canon",    "replay",  "plc run",
+                                                             "plc check", "plc test", "plc list"};
 
 int carry_out(const CommandLine& line) {
   if (std::find(kNothingToStop.begin(), kNothingToStop.end(), line.command) != kNothingToStop.end())
@@ -33,6 +33,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "backup") return command::backup(line.backup);
   if (line.command == "restore") return command::restore(line.backup);
   if (line.command == "replay") return command::replay(line.replay);
+  if (line.command == "capture") return command::capture(line.capture);
   if (line.command == "test") return command::test(line.test);
   if (line.command == "plc run") return command::plc_run(line.plc.run);
   if (line.command == "plc check") return command::plc_check(line.plc.check);

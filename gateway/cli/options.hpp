@@ -8,6 +8,7 @@
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/cli/plc_options.hpp"
 #include "gateway/cli/test_options.hpp"
+#include "gateway/control/run/capture/capture_request.hpp"
 #include "gateway/control/run/clock_kind.hpp"
 #include "gateway/control/run/exit_code.hpp"
 
@@ -17,6 +18,7 @@ struct RunOptions {
   std::string machine, program, dialect;
   ClockKind clock = ClockKind::unset;
   std::string trace, report, html, record, can_log, state, tables;
+  CaptureRequest capture;
   double override_percent = 100.0;
   std::optional<double> patience_s;  ///< machine time that a program may wait for somebody; 0: for ever
   std::vector<std::string> forces;   ///< NAME=VALUE
@@ -29,6 +31,7 @@ struct RunOptions {
 
 struct UpOptions {
   std::string machine, state, socket, record, can_log;
+  CaptureRequest capture;
   ClockKind clock = ClockKind::unset;
   double speed = 1.0;
   bool json = false;
@@ -74,6 +77,11 @@ struct ReplayOptions {
   bool json = false;
 };
 
+struct CaptureOptions {
+  std::string file, csv;
+  bool json = false;
+};
+
 /// `servogate backup` and `restore`.
 struct BackupOptions {
   std::string machine, file, state;
@@ -89,6 +97,7 @@ struct CommandLine {
   CheckOptions check;
   CanonOptions canon;
   ReplayOptions replay;
+  CaptureOptions capture;
   BackupOptions backup;
   TestOptions test;
   PlcCommands plc;

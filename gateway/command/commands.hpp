@@ -16,6 +16,7 @@ int client(const ClientOptions& options);
 int check(const CheckOptions& options);
 int canon(const CanonOptions& options);
 int replay(const ReplayOptions& options);
+int capture(const CaptureOptions& options);
 int test(const TestOptions& options);
 int backup(const BackupOptions& options);
 int restore(const BackupOptions& options);

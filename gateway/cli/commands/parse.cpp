@@ -129,6 +129,7 @@ class Commands {
     check();
     canon();
     replay();
+    capture();
     test();
     backup();
     restore();
@@ -202,6 +203,7 @@ class Commands {
     app.add_option("--report", o.report, "Writes the report to this JSON file");
     app.add_option("--html", o.html, "Writes the report to this HTML file");
     app.add_option("--record", o.record, "Records inputs and requests for `servogate replay`");
+    capture_options(app, o.capture);
     app.add_option("--can-log", o.can_log,
                    "Writes the frames of each simulated CAN bus to BUS.log in this folder")
         ->type_name("DIR");
@@ -244,6 +246,7 @@ class Commands {
     app.add_option("--state", o.state, "State directory instead of the machine file's");
     app.add_option("--socket", o.socket, "Control socket instead of the default");
     app.add_option("--record", o.record, "Records inputs, requests and programs for `servogate replay`");
+    capture_options(app, o.capture);
     app.add_option("--can-log", o.can_log,
                    "Writes the frames of each simulated CAN bus to BUS.log in this folder")
         ->type_name("DIR");
@@ -372,6 +375,32 @@ class Commands {
     tables(app, o.tables);
     process(app, o.process, "Process that runs the program, from 1; without it the first one");
     app.add_flag("--json", o.json, "As JSON, which it always is");
+  }
+
+  static void capture_options(CLI::App& app, CaptureRequest& o) {
+    app.add_option("--capture", o.file, "Writes chosen values of each cycle to this file, *.csv or *.mcap")
+        ->type_name("FILE");
+    app.add_option("--channels", o.channels,
+                   "What --capture holds: names and groups with commas between them")
+        ->type_name("NAMES");
+    app.add_option("--trigger", o.trigger,
+                   "When --capture begins, as \"X.error > 0.05\" or alarm; without it at once")
+        ->type_name("CONDITION");
+    app.add_option("--before", o.before_s, "Time before the trigger that is in the capture")
+        ->type_name("SECONDS")
+        ->check(number_within({0.0, 3600.0, "s"}));
+    app.add_option("--after", o.after_s, "Time behind the trigger that is in the capture")
+        ->type_name("SECONDS")
+        ->check(number_within({0.0, 3600.0, "s"}));
+  }
+
+  void capture() {
+    CaptureOptions& o = line_.capture;
+    CLI::App& app = command("capture", "Says what a capture (*.mcap) holds, and makes CSV of it.",
+                            "servogate capture alarm.mcap --csv alarm.csv");
+    app.add_option("FILE", o.file, "File written by --capture, or one of the black box")->required();
+    app.add_option("--csv", o.csv, "Writes its values to this CSV file, its frames to a file beside it");
+    app.add_flag("--json", o.json, "As JSON");
   }
 
   void replay() {

@@ -109,6 +109,15 @@ Session& RunningMachine::watch(const Outputs& outputs) {
   return *session_;
 }
 
+bool RunningMachine::capture(const CaptureRequest& request, drivers::Notice& why) {
+  capture_ = MachineCapture::open(*control_, request, why);
+  return capture_ != nullptr;
+}
+
+void RunningMachine::keep_black_box(const std::string& folder) {
+  black_box_ = MachineCapture::black_box(*control_, folder);
+}
+
 bool RunningMachine::begin(std::vector<drivers::Notice>& refusals) {
   if (settings_.clock != ClockKind::virtual_time) return begin_realtime(refusals);
   if (paced())
@@ -142,6 +151,8 @@ std::vector<RunningMachine::Lost> RunningMachine::close_files() {
   if (session_ != nullptr) note(trace_, session_->close());
   if (record_ != nullptr) note(settings_.record, record_->close());
   if (can_log_ != nullptr) note(settings_.can_log, can_log_->close());
+  for (const auto& capture : {capture_.get(), black_box_.get()})
+    if (capture != nullptr) note(capture->path(), capture->close());
   return lost;
 }
 
@@ -169,6 +180,8 @@ void RunningMachine::wait_for_room() {
   if (session_ != nullptr) session_->wait_for_room();
   if (record_ != nullptr) record_->wait_for_room();
   if (can_log_ != nullptr) can_log_->wait_for_room();
+  for (const auto& capture : {capture_.get(), black_box_.get()})
+    if (capture != nullptr) capture->wait_for_room();
 }
 
 bool RunningMachine::cycle() {
@@ -190,6 +203,8 @@ bool RunningMachine::move_on(image::Nanoseconds late_ns) {
 void RunningMachine::after_cycle(image::Nanoseconds late_ns) noexcept {
   journal_.note(control_->cycle().image());
   if (session_ != nullptr) session_->after_cycle(late_ns);
+  if (capture_ != nullptr) capture_->after_cycle();
+  if (black_box_ != nullptr) black_box_->after_cycle();
   if (record_ == nullptr || record_broken_ || !record_->broken()) return;
   record_broken_ = true;
   image::AlarmRecord r;
