@@ -110,6 +110,7 @@ class Process final : public cycle::ProcessInCycle {
     bool begun = false;        ///< the feeder has begun it
     bool forward = false;
     bool ends = false;    ///< it ends as soon as it is at rest
+    bool capped = false;  ///< no faster than its feed, whatever the override
     double behind = 0.0;  ///< path to where the program was held
     double feed = 0.0;
     path::Tag tag;  ///< where it stands

@@ -244,12 +244,8 @@ FollowerState Follower::report() const noexcept {
   return rest_asked() ? FollowerState::held : FollowerState::moving;
 }
 
-/// Speed over the linear axes, or the rotary ones where only they move.
 void Follower::show_feed(const Vector& velocity) noexcept {
-  double linear = 0.0, turning = 0.0;
-  for (int i = 0; i < config_.axis_count; ++i)
-    (config_.rotary[i] ? turning : linear) += velocity[i] * velocity[i];
-  sample_.feed = std::sqrt(linear > 1e-12 * turning ? linear : turning);
+  sample_.feed = norm(velocity, config_.axis_count);
 }
 
 void Follower::place_course_on_axes() noexcept {

@@ -22,7 +22,7 @@ enum class FollowerState : std::uint8_t {
 /// The set-point of one cycle, of the axes.
 struct Sample {
   Vector position{}, velocity{}, acceleration{};  ///< mm, mm/s, mm/s2 (degrees)
-  double feed = 0.0;                              ///< speed along the path, mm/s over the linear axes
+  double feed = 0.0;                              ///< speed of the vector over mm and degrees, per s
   double distance_to_go = 0.0;                    ///< path length to the end of the block in motion
   Vector target{};                                ///< end point of the block in motion
   Tag tag;                                        ///< block in motion (or the last one)

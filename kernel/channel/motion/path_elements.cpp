@@ -94,30 +94,30 @@ path::Element PathElements::element(const program::Command& command, const path:
   return e;
 }
 
-/// A program's feed is that of the vector over millimetres and degrees alike (NC-110: specification A 17.1);
-/// the path counts along the linear axes, or the rotary ones where only they move.
+/// Of the vector over millimetres and degrees.
+double PathElements::length(const path::Element& e, const path::Vector& from, double arc_length) const {
+  double square = arc_length * arc_length;
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
+    const bool in_plane = e.kind == path::Element::Kind::arc && (i == e.axis1 || i == e.axis2);
+    if (!in_plane) square += (e.to[i] - from[i]) * (e.to[i] - from[i]);
+  }
+  return std::sqrt(square);
+}
+
+/// A program's feed is that of the vector over millimetres and degrees alike (NC-110: specification A 17.1).
 void PathElements::set_feed(path::Element& e, const path::Vector& from, const program::Feed& feed,
                             double arc_length) const {
-  double linear = arc_length * arc_length, turning = 0.0;
-  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
-    const double d = e.to[i] - from[i];
-    const bool in_plane = e.kind == path::Element::Kind::arc && (i == e.axis1 || i == e.axis2);
-    if (!in_plane) (config_.rotary[i] ? turning : linear) += d * d;
-  }
-  const double length = std::sqrt(linear > 1e-12 * turning ? linear : turning);
-  const double vector = std::sqrt(linear + turning);
-  const double share = vector > 0.0 ? length / vector : 1.0;
   switch (feed.unit) {
     case program::FeedUnit::mm_per_min:
-      e.feed = feed.value / 60.0 * share;
+      e.feed = feed.value / 60.0;
       break;
     case program::FeedUnit::inverse_time:
-      e.feed = feed.value * length / 60.0;
+      e.feed = feed.value * length(e, from, arc_length) / 60.0;
       break;
     case program::FeedUnit::mm_per_rev:
       e.revolutions = rpm(e, from, spindle_at_) / 60.0;
       e.surface = surface(e, from);
-      e.feed = feed.value * e.revolutions * share;
+      e.feed = feed.value * e.revolutions;
       break;
   }
 }

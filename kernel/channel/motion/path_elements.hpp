@@ -46,6 +46,7 @@ class PathElements {
   path::Element element(const program::Command& command, const path::Vector& from) const;
 
  private:
+  double length(const path::Element& element, const path::Vector& from, double arc_length) const;
   void set_feed(path::Element& element, const path::Vector& from, const program::Feed& feed,
                 double arc_length) const;
   path::Surface surface(const path::Element& element, const path::Vector& from) const;

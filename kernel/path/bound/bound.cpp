@@ -166,10 +166,9 @@ double path_rate(const Config& config, const Piece& p) {
     }
   };
   for (int k = 0; k < 5; ++k) {
-    double linear = 0.0;
-    for (int i = 0; i < config.axis_count; ++i)
-      if (!config.rotary[i]) linear += control(i, k) * control(i, k);
-    worst = std::max(worst, std::sqrt(linear) / p.full);
+    double square = 0.0;
+    for (int i = 0; i < config.axis_count; ++i) square += control(i, k) * control(i, k);
+    worst = std::max(worst, std::sqrt(square) / p.full);
   }
   return std::max(1.0, worst);
 }

@@ -27,7 +27,7 @@ struct Bound {
 /// The box of a piece whose speed will not exceed `velocity_cap` (infinite: as fast as the limits).
 Box box(const Config& config, const Piece& piece, double velocity_cap);
 
-/// Largest speed over the linear axes (over all where none moves) for a parameter speed of 1.
+/// Largest speed of the vector over mm and degrees for a parameter speed of 1.
 double path_rate(const Config& config, const Piece& piece);
 
 /// Box and feed of a piece as the contour put it.

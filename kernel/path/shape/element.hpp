@@ -103,8 +103,8 @@ struct Element {
   std::uint8_t axis1 = 0, axis2 = 1;
   double center1 = 0.0, center2 = 0.0;
   double sweep_deg = 0.0;
-  /// mm/s along the linear axes, degrees/s where only rotary axes move; > 0. A rapid ignores it and is as
-  /// fast as the axis limits; it always starts and ends with an exact stop.
+  /// Speed of the vector over mm and degrees, mm/s (degrees/s); > 0. A rapid ignores it and is as fast as the
+  /// axis limits; it always starts and ends with an exact stop.
   double feed = 0.0;
   /// Feed per revolution: `feed` is that at so many revolutions a second of the spindle, the most that it is
   /// planned for, and it goes with the speed that Follower::set_spindle() tells; 0: feed per time.
