@@ -25,6 +25,7 @@ enum class FollowerState : std::uint8_t {
 struct ByMaster {
   bool underway = false;                  ///< begun, or waiting for its angle
   bool waits = false;                     ///< for its angle
+  bool leaving = false;                   ///< off its master: it slows down, and goes off the path
   bool locked = false;                    ///< behind its lead-in, its angle is the master's
   bool reverse = false;                   ///< a tap asks for the reversal of its spindle, from then on
   bool halt = false;                      ///< a tap that is given up asks for its spindle to stop

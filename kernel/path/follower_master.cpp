@@ -103,11 +103,12 @@ void Follower::show_master() noexcept {
   ByMaster& shown = sample_.master;
   shown.underway = in_span_ && by_master_;
   if (!shown.underway) {
-    shown.waits = shown.locked = shown.reverse = shown.halt = false;
+    shown.waits = shown.leaving = shown.locked = shown.reverse = shown.halt = false;
     shown.fault = MasterFault::none;
     return;
   }
   shown.waits = master_.at_rest() && !master_.leaving();
+  shown.leaving = master_.leaving();
   shown.locked = master_.locked();
   shown.reverse = master_.wants_reverse();
   shown.halt = master_.wants_halt();
