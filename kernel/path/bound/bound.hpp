@@ -15,6 +15,7 @@ struct Feed {
   double speed = 0.0;     ///< at override 1, with the spindle turning as planned; within the box
   double per_turn = 0.0;  ///< in one revolution of the spindle, 0: feed per time
   double turns = 0.0;     ///< revolutions a second that `speed` is planned for
+  Lock lock{};            ///< by the angle of the spindle, from the begin of the piece on
   bool rapid = false;     ///< follows the override up to 1 only
 };
 
