@@ -28,6 +28,8 @@ namespace servogate::machine {
 /// contour on inside radii and the centre on outside ones.
 enum class ArcFeed : std::uint8_t { tool_centre, contour, inside };
 enum class AxisType : std::uint8_t { linear, rotary };
+/// For languages that have words of their own for each; `by_axes`: turning where an axis counts diameters.
+enum class MachineKind : std::uint8_t { by_axes, turning, milling };
 enum class Direction : std::uint8_t { plus, minus };
 /// How an axis finds its zero. `absolute`: the kept reference of an absolute encoder; `none`: zero where it
 /// is switched on; `drive`: by a method of the drive itself (6098h).
@@ -298,6 +300,7 @@ struct RealtimeConfig {
 struct ControlConfig {
   double cycle_time = 0.001;  ///< s
   std::string dialect = "nc110";
+  MachineKind kind = MachineKind::by_axes;
   std::vector<std::string> power_on;        ///< in the dialect's words: "G94", ...
   std::map<std::string, double> variables;  ///< "ERF" -> mm, "MCD" -> 2, ...
   double contour_tolerance = 0.01;          ///< mm

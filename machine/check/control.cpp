@@ -196,6 +196,7 @@ void check_settings(const MachineConfig& machine, Reading& reading) {
   for (const AxisConfig& a : machine.axes)
     model.axes.push_back({.letter = a.letter, .rotary = a.type == AxisType::rotary, .diameter = a.diameter});
   for (const OwnCodeConfig& c : machine.own_codes) model.own_codes.push_back({c.code, c.program, c.words});
+  model.kind = static_cast<program::MachineModel::Kind>(machine.control.kind);
   model.power_on = machine.control.power_on;
   model.variables = machine.control.variables;
   const program::Interpreter reader(machine.control.dialect, std::move(model), {}, {}, {}, {}, {});

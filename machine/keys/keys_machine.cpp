@@ -11,12 +11,24 @@ std::span<const std::string_view> choices_of<ArcFeed>() {
 }
 
 template <>
+std::span<const std::string_view> choices_of<MachineKind>() {
+  static constexpr std::string_view kNames[] = {"by_axes", "turning", "milling"};
+  return kNames;
+}
+
+template <>
 const Section& section_of<ControlConfig>() {
   using C = ControlConfig;
   static const Key keys[] = {
       key<&C::cycle_time>("cycle_time", {.unit = Unit::second, .min = 0.00025, .max = kLongestCycle},
                           "period of the cycle", "период цикла"),
       key<&C::dialect>("dialect", {}, "language of the part programs", "язык управляющих программ"),
+      key<&C::kind>(
+          "machine", {},
+          "for languages with words of their own for turning and milling; by_axes: turning where an "
+          "axis is programmed in diameter",
+          "для языков с отдельными словами для точения и фрезерования; by_axes: точение, если "
+          "какая-то ось программируется в диаметре"),
       key<&C::power_on>("power_on", {}, "modal words in force after power-on",
                         "модальные функции после включения"),
       key<&C::variables>("variables", {},

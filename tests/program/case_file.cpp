@@ -109,6 +109,10 @@ class Reader {
       const std::map<std::string, ArcFeed> names = {
           {"tool-centre", ArcFeed::tool_centre}, {"contour", ArcFeed::contour}, {"inside", ArcFeed::inside}};
       case_.machine.arc_feed = names.at(value);
+    } else if (name[0] == "machine") {
+      case_.machine.kind = value == "turning" ? MachineModel::Kind::turning : MachineModel::Kind::milling;
+    } else if (name[0] == "quadrant" && name.size() == 2) {
+      case_.tables.correctors[std::stoi(name[1])].quadrant = std::stoi(value);
     } else if (name[0] == "power_on") {
       case_.machine.power_on = words_of(value);
     } else if (name[0] == "start") {

@@ -49,19 +49,24 @@ MachineModel completed(const Dialect& language, MachineModel model) {
   return model;
 }
 
+const Dialect& first_language(const Dialect& language, const MachineModel& machine) {
+  return language.begins == nullptr ? language : language.begins(machine);
+}
+
 }  // namespace
 
 ExecutionData::ExecutionData(const Dialect& language_, MachineModel model, Tables tables,
                              std::string file_name, ProgramText text, ProgramLoader loader,
                              const Position& start, int process_)
     : machine(std::make_shared<const MachineModel>(completed(language_, std::move(model)))),
-      extended(with_own_codes(language_, *machine)),
-      dialect(extended ? extended.get() : &language_),
+      extended(with_own_codes(first_language(language_, *machine), *machine)),
+      dialect(extended ? extended.get() : &first_language(language_, *machine)),
       axes(letters_of(*machine)),
-      language(&language_),
+      language(&first_language(language_, *machine)),
       process(process_) {
   files.loader = std::move(loader);
-  files.sources.push_back(std::make_shared<const Source>(*dialect, file_name, std::move(text)));
+  files.language = language;
+  files.sources.push_back(std::make_shared<const Source>(*language, file_name, std::move(text)));
   files.names.push_back(std::move(file_name));
   state.parameters = Parameters(dialect->parameters, parameters_of(dialect->parameters, *machine));
   state.frames.tables = std::make_shared<const Tables>(std::move(tables));
@@ -91,8 +96,13 @@ void Execution::reset() {
   state_.motion.cycle = Cycle{};
   end_virtual_axes(machine_, state_.virtual_axes, state_.frames.machine);
   BlockWords none;
-  for (const GRule& rule : dialect_.g)
-    if (rule.at_power_on) take_g(none, rule);
+  const bool arranges = dialect_.arrange != nullptr;
+  if (arranges) state_.own = {};
+  for (const GRule& rule : dialect_.g) {
+    if (!rule.at_power_on) continue;
+    take_g(none, rule);
+    if (arranges && rule.take != nullptr) rule.take(*this, none, Word{});
+  }
   frames_.changed();
 }
 
@@ -268,6 +278,8 @@ std::optional<Step> Execution::advance(bool synchronised) {
 /// One block. A value when it has to wait for the end of motion.
 std::optional<Step> Execution::read_ahead(bool synchronised) {
   if (data_.contour_before) data_.contour_before.reset();
+  if (dialect_.speaks != nullptr) follow_language();
+  block_.levels_left_out = state_.skip_levels;
   read_block(dialect_, data_.axes, flow_.source().line(data_.line), block_);
   const bool left_out = block_.skip && (state_.skip_levels >> block_.skip_level & 1u) != 0;
   if (block_.kind == BlockKind::empty || left_out) {

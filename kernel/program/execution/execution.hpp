@@ -24,7 +24,14 @@ struct ExecutionData {
   std::shared_ptr<const Dialect> extended;  ///< with the own codes of the machine, where it has some
   const Dialect* dialect;
   AxisLetters axes;
-  const Dialect* language;  ///< as it is without them
+  const Dialect* language;                 ///< as it is without them
+  const Dialect* next_language = nullptr;  ///< of the blocks behind this one; null: the same
+  /// What the caller of each subprogram comes back to.
+  struct Caller {
+    const Dialect* language;
+    std::optional<Modes> modes;
+  };
+  std::vector<Caller> callers;
   int process;
   ProgramFiles files;
   State state;
@@ -123,6 +130,11 @@ class Execution : public ValueSource {
   /// Throws for an axis that no block may name now: a virtual one that is not in force, one that follows
   /// others.
   void refuse_barred(int axis, int column) const;
+  /// The blocks behind this one are read in another language.
+  void speak(const Dialect& language) { data_.next_language = &language; }
+  const Dialect& language() const noexcept { return *data_.language; }
+  /// The modes in force come back where this subprogram ends.
+  void keep_modes();
   /// Refuses the words of a block that has no motion, but for those that its function takes.
   void refuse_all_but(const BlockWords& words, std::initializer_list<const Word*> taken) const;
   /// The same, but for axes and F.
@@ -131,6 +143,10 @@ class Execution : public ValueSource {
   void finish(bool rewind);
 
  private:
+  // language.cpp
+  void follow_language();
+  void take_language(const Dialect& language);
+
   // execution.cpp
   std::optional<Step> advance(bool synchronised);
   std::optional<Step> read_ahead(bool synchronised);
@@ -180,7 +196,8 @@ class Execution : public ValueSource {
   void change_tool();
 
   ExecutionData data_;
-  const Dialect& dialect_ = *data_.dialect;
+  Dialect spoken_ = *data_.dialect;
+  const Dialect& dialect_ = spoken_;
   const MachineModel& machine_ = *data_.machine;
   State& state_ = data_.state;
   Block& block_ = data_.block;

@@ -25,6 +25,7 @@ BlockWords Execution::gather() {
     if (word.meaning == Meaning::g) continue;
     if (word.value.expression != 0) evaluate_words(word);
     if (word.meaning == Meaning::axis) {
+      if (word.axis < 0) continue;  // the language judges it
       refuse_barred(word.axis, word.column);
       words.axis[static_cast<std::size_t>(word.axis)] = &word;
       ++words.axes;
@@ -32,7 +33,8 @@ BlockWords Execution::gather() {
       gather_word(words, word);
     }
   }
-  if (words.has_centres)
+  if (dialect_.arrange != nullptr) dialect_.arrange(*this, words);
+  if (words.has_centres && (words.instead == nullptr || dialect_.arrange == nullptr))
     for (std::size_t i = 0; i < block_.count; ++i)
       if (block_.words[i].meaning == Meaning::centre_of) gather_centre(words, block_.words[i]);
   return words;
@@ -62,7 +64,7 @@ void Execution::gather_g(BlockWords& words, const Word& word, std::vector<const 
   if (rule == nullptr) {
     const int number = numbers_.whole(word.value, "G");
     rule = dialect_.find_g(number);
-    if (rule == nullptr) fail(Fault::g_unknown, word.column, {std::to_string(number)});
+    if (rule == nullptr) fail(Fault::g_unknown, word.column, {g_name(number)});
   }
   if (word.g == nullptr || !by_value.empty()) {
     // A number that is known only now: what reading could not judge is judged against all of the block.
@@ -170,9 +172,9 @@ void Execution::check_parameter_g(const std::vector<const GRule*>& rules, const 
   const GRule& second = *rules.back();
   for (std::size_t i = 0; i + 1 < rules.size(); ++i)
     if (rules[i]->group == second.group || dialect_.conflict(rules[i]->number, second.number))
-      fail(Fault::g_conflict, last.column, {std::to_string(rules[i]->number), std::to_string(second.number)});
+      fail(Fault::g_conflict, last.column, {g_name(rules[i]->number), g_name(second.number)});
   if (second.function == Function::later)
-    fail(Fault::not_executed, last.column, {"G" + std::to_string(second.number)});
+    fail(Fault::not_executed, last.column, {"G" + g_name(second.number)});
 }
 
 }  // namespace servogate::program

@@ -100,7 +100,7 @@ void check_own_code(const Dialect& language, const Parameters& parameters, const
 }
 
 void Execution::gather_own(BlockWords& words, const Word& word) {
-  if (words.instead != nullptr)
+  if (words.instead != nullptr && dialect_.arrange == nullptr)
     fail(Fault::word_without_function, word.column, {word_text(dialect_, block_, word)});
   words.instead = run_own_code;
   words.instead_word = &word;

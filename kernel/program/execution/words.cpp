@@ -82,9 +82,15 @@ bool Execution::begin_contour(const BlockWords& words, const Modes& before) {
     if (contour_.engaged()) refuse_in_contour(words);
     return false;
   }
-  if (is == Function::compensation_off) return true;
+  if (is == Function::compensation_off) {
+    if (!dialect_.side_changes) return true;
+    contour_.end();
+    return false;
+  }
   const int column = static_cast<int>(block_.body) + 1;
-  if (was != Function::compensation_off || contour_.engaged())
+  if (was != Function::compensation_off && dialect_.side_changes)
+    contour_.end();
+  else if (was != Function::compensation_off || contour_.engaged())
     fail(Fault::contour_side, column, {name_of(is), name_of(was)});
   if (words.cycle != 0 || !state_.motion.cycle.name.empty())
     fail(Fault::contour_excludes, column, {state_.motion.cycle.name});
@@ -122,7 +128,7 @@ void Execution::refuse_in_contour(const BlockWords& words) const {
 /// "G41": the word of a function.
 std::string Execution::name_of(Function function) const {
   for (const GRule& rule : dialect_.g)
-    if (rule.function == function) return "G" + std::to_string(rule.number);
+    if (rule.function == function) return "G" + g_name(rule.number);
   return {};
 }
 
@@ -168,7 +174,7 @@ void Execution::take_g(BlockWords& words, const GRule& rule) {
     case Function::plane_31:
     case Function::plane_23:
       if (words.block != nullptr && (contour_.engaged() || state_.contour.shifted()))
-        fail(Fault::contour_excludes, static_cast<int>(block_.body) + 1, {"G" + std::to_string(rule.number)});
+        fail(Fault::contour_excludes, static_cast<int>(block_.body) + 1, {"G" + g_name(rule.number)});
       return frames_.select_plane(rule.function, words.block != nullptr, static_cast<int>(block_.body) + 1);
     case Function::work_offset:
       return frames_.use_origin(rule.value, static_cast<int>(block_.body) + 1);

@@ -238,8 +238,10 @@ constexpr text::Entry kMessages[] = {
      "{0} в кадре с {1}: рядом с ним стоят только слова из его таблицы"},
     {"P755", "{0}: corner {1} does not fit between the parts of the contour beside it",
      "{0}: угол {1} не помещается между соседними участками контура"},
+    {"P114", "the skip level {0} is none: there are 0 to 9",
+     "уровня пропуска {0} нет: есть уровни от 0 до 9"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::cycle_corner) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::skip_level) + 1);
 
 }  // namespace
 

@@ -154,6 +154,7 @@ enum class Fault : std::uint8_t {
   own_code_word,
   own_code_alone,
   cycle_corner,
+  skip_level,
 };
 
 /// All texts, in the order of Fault.

@@ -2,11 +2,15 @@
 #include "kernel/program/interpreter/findings.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/execution/own_codes.hpp"
 
 namespace servogate::program {
 namespace {
@@ -17,8 +21,11 @@ constexpr long long kMostFindings = 10'000;
 /// Reads one file without executing it.
 class FileReader {
  public:
-  FileReader(const Execution& run, const Source& source, std::vector<text::Finding>& out)
-      : run_(run), source_(source), out_(out) {}
+  FileReader(const Execution& run, const Dialect& language, const Source& source,
+             std::vector<text::Finding>& out)
+      : run_(run), source_(source), out_(out) {
+    speak(language);
+  }
 
   void read() {
     const std::size_t before = out_.size();
@@ -61,7 +68,8 @@ class FileReader {
                      [](const text::Finding& a, const text::Finding& b) { return a.line < b.line; });
   }
 
-  const std::set<std::string>& called() const { return called_; }
+  /// Names of the programs that it calls, each with the language of the first such block.
+  const std::map<std::string, const Dialect*>& called() const { return called_; }
 
  private:
   void add(text::Severity severity, Fault fault, int column, std::vector<std::string> arguments) {
@@ -72,32 +80,58 @@ class FileReader {
     if (++count.found == kMostFindings + 1) count.line = line_, count.column = error.column;
     if (count.found > kMostFindings) return;
     out_.push_back(
-        {severity, source_.path(), line_, error.column, run_.dialect().own(error.entry), error.arguments});
+        {severity, source_.path(), line_, error.column, dialect_->own(error.entry), error.arguments});
   }
 
+  /// The language of a line may have been changed by the one before it.
   void read_line(std::uint32_t index) {
-    const Dialect& dialect = run_.dialect();
-    read_block(dialect, run_.axes(), source_.line(index), block_);
+    const std::string_view line = source_.line(index);
+    const auto follow = [&](bool first) {
+      if (dialect_->speaks == nullptr) return;
+      if (const Dialect* next = dialect_->speaks(run_.machine(), line, first); next != nullptr) speak(*next);
+    };
+    if (index == 0) follow(true);
+    try {
+      judge_line(*dialect_, index, line);
+    } catch (const ProgramError&) {
+      follow(false);
+      throw;
+    }
+    follow(false);
+  }
+
+  void speak(const Dialect& language) {
+    if (language_ == &language) return;
+    language_ = &language;
+    extended_ = &language == &run_.language() ? nullptr : with_own_codes(language, run_.machine());
+    dialect_ = extended_ != nullptr            ? extended_.get()
+               : &language == &run_.language() ? &run_.dialect()
+                                               : &language;
+  }
+
+  void judge_line(const Dialect& dialect, std::uint32_t index, std::string_view line) {
+    read_block(dialect, run_.axes(), line, block_);
     if (block_.number >= 0 && std::to_string(block_.number).size() > dialect.max_block_number_digits)
       add(text::Severity::warning, Fault::block_number_long, block_.number_column,
           {std::to_string(block_.number), std::to_string(dialect.max_block_number_digits)});
     if (block_.trailing_comment && block_.kind != BlockKind::empty && !dialect.lexis.comment_behind_words)
       add(text::Severity::warning, Fault::trailing_comment,
           static_cast<int>(block_.line.find(dialect.lexis.comment, block_.end)) + 1, {});
-    if (block_.kind == BlockKind::words) judge_expressions();
+    if (block_.kind == BlockKind::words) judge_expressions(dialect);
     if (dialect.judge == nullptr || block_.kind == BlockKind::empty) return;
     const auto calls = [](void* where, std::string_view name) {
-      static_cast<std::set<std::string>*>(where)->emplace(name);
+      auto* reader = static_cast<FileReader*>(where);
+      reader->called_.emplace(name, reader->language_);
     };
-    dialect.judge({run_, source_, index, calls, &called_}, block_);
+    dialect.judge({run_, source_, index, calls, this}, block_);
   }
 
   /// Their form; an expression in brackets has only been skipped so far.
-  void judge_expressions() const {
+  void judge_expressions(const Dialect& dialect) const {
     const auto judge = [&](const Value& value) {
       std::size_t pos = value.expression - 1u;
       if (value.expression != 0)
-        evaluate(run_.dialect().expressions, block_.line.substr(0, block_.end), pos, nullptr);
+        evaluate(dialect.expressions, block_.line.substr(0, block_.end), pos, nullptr);
     };
     for (std::size_t i = 0; i < block_.count; ++i) judge(block_.words[i].value);
     for (std::size_t i = 0; i < block_.argument_count; ++i) judge(block_.arguments[i]);
@@ -109,9 +143,12 @@ class FileReader {
   };
 
   const Execution& run_;
+  const Dialect* language_ = nullptr;
+  std::shared_ptr<const Dialect> extended_;  ///< with the own codes of the machine
+  const Dialect* dialect_ = nullptr;
   const Source& source_;
   std::vector<text::Finding>& out_;
-  std::set<std::string> called_;
+  std::map<std::string, const Dialect*> called_;
   Block block_;
   int line_ = 0;
   Count counts_[2];  ///< errors, warnings
@@ -121,18 +158,18 @@ class FileReader {
 
 std::vector<text::Finding> find_all(const Execution& run) {
   std::vector<text::Finding> out;
-  FileReader main(run, run.flow().main_source(), out);
+  FileReader main(run, run.language(), run.flow().main_source(), out);
   main.read();
   std::set<std::string> done;
-  std::vector<std::string> open(main.called().begin(), main.called().end());
+  std::vector<std::pair<std::string, const Dialect*>> open(main.called().begin(), main.called().end());
   while (!open.empty()) {
-    const std::string name = open.back();
+    const auto [name, language] = open.back();
     open.pop_back();
     if (!done.insert(name).second) continue;
     const auto loaded = run.flow().loader() ? run.flow().loader()(name) : std::nullopt;
     if (!loaded) continue;
     const Source source(run.dialect(), name, loaded->text, loaded->path);
-    FileReader reader(run, source, out);
+    FileReader reader(run, *language, source, out);
     reader.read();
     open.insert(open.end(), reader.called().begin(), reader.called().end());
   }

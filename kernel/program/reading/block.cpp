@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/reading/block.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "kernel/program/faults/texts.hpp"
@@ -26,8 +27,12 @@ void classify(const Lexis& lexis, Block& block) {
   const auto bit = [](char c) { return std::uint64_t{1} << (static_cast<unsigned char>(c) & 63u); };
   const std::uint64_t marks = bit('"') | bit('=') | bit(lexis.comment) | bit(lexis.comment_pair);
   bool quoted = false;
+  int depth = 0;  // of brackets that are comments
+  const bool comments = lexis.bracket == Bracket::comment;
   for (std::size_t i = block.body; i < line.size(); ++i) {
     const char c = line[i];
+    if (comments && (c == '(' || c == ')')) depth = std::max(0, depth + (c == '(' ? 1 : -1));
+    if (depth > 0) continue;
     if ((marks & bit(c)) == 0) continue;  // most characters, in one step
     if (c == '"') quoted = !quoted;
     if (quoted) continue;

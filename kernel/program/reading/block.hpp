@@ -67,6 +67,8 @@ struct Block {
   Sync sync = Sync::standard;
   bool skip = false;            ///< a skip mark stands in front
   std::uint8_t skip_level = 0;  ///< its digit
+  /// Bit of each level that is left out where such a mark stands anywhere; whoever reads the block sets it.
+  std::uint16_t levels_left_out = 0;
   bool trailing_comment = false;
   std::int32_t number = -1;  ///< N
   std::uint16_t number_column = 0;

@@ -14,6 +14,8 @@ inline bool name_character(char c) { return is_letter(c) || is_digit(c) || c == 
 [[noreturn]] void fail_prefix(const Dialect& dialect, int column, char c);
 /// Block number, label and the like in their fixed order; the body begins behind them.
 void read_prefix(const Dialect& dialect, std::string_view line, Block& block);
+/// The digit behind a skip mark, 0 where none stands; `pos` at the mark, moved behind both.
+std::uint8_t read_skip_level(const Lexis& lexis, std::string_view line, std::size_t& pos);
 /// The words of the body, each judged by its rule and against those before it.
 void read_words(const Dialect& dialect, const AxisLetters& axes, Block& block);
 

@@ -70,20 +70,28 @@ void fail_prefix(const Dialect& dialect, int column, char c) {
   fail(Fault::prefix_order, column, {std::string(1, c), text::both(terms.prefix, terms.prefix_russian)});
 }
 
+std::uint8_t read_skip_level(const Lexis& lexis, std::string_view line, std::size_t& pos) {
+  const std::size_t begin = ++pos;
+  if (!lexis.skip_levels || pos == line.size() || !is_digit(line[pos])) return 0;
+  if (lexis.skip_anywhere && read_index(line, pos) > 9)
+    fail(Fault::skip_level, column(begin), {std::string(line.substr(begin, pos - begin))});
+  pos = begin + 1;
+  return static_cast<std::uint8_t>(line[begin] - '0');
+}
+
 void read_prefix(const Dialect& dialect, std::string_view line, Block& block) {
   std::size_t pos = 0;
   for (Prefix before = Prefix::none;;) {
     pos = skip_spaces(line, pos);
     if (pos >= line.size()) break;
     const Prefix part = prefix_at(dialect, line, pos);
-    if (part == Prefix::none) break;
+    if (part == Prefix::none || (part <= before && part == Prefix::skip && dialect.lexis.skip_anywhere))
+      break;
     if (part <= before) fail_prefix(dialect, column(pos), line[pos]);
     before = part;
     if (part == Prefix::skip) {
       block.skip = true;
-      ++pos;
-      if (dialect.lexis.skip_levels && pos < line.size() && is_digit(line[pos]))
-        block.skip_level = static_cast<std::uint8_t>(line[pos++] - '0');
+      block.skip_level = read_skip_level(dialect.lexis, line, pos);
     } else if (part == Prefix::label) {
       pos = read_label(dialect, line, pos);
     } else if (part == Prefix::colon_label) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -32,7 +33,7 @@ bool is_whole(Meaning m) {
 void place_g(const Dialect& dialect, Word& word) {
   if (word.value.parameter >= 0 || word.value.expression != 0) return;
   word.g = dialect.find_g(static_cast<int>(word.value.number));
-  if (word.g == nullptr) fail(Fault::g_unknown, word.column, {text::number(word.value.number)});
+  if (word.g == nullptr) fail(Fault::g_unknown, word.column, {g_name(static_cast<int>(word.value.number))});
 }
 
 /// A G word that this version does not execute may bring words of its own: it is named before them.
@@ -40,7 +41,7 @@ void name_later_g(const Block& block) {
   for (std::size_t i = 0; i < block.count; ++i) {
     const Word& word = block.words[i];
     if (word.meaning == Meaning::g && word.g != nullptr && word.g->function == Function::later)
-      fail(Fault::not_executed, word.column, {"G" + std::to_string(word.g->number)});
+      fail(Fault::not_executed, word.column, {"G" + g_name(word.g->number)});
   }
 }
 
@@ -51,9 +52,11 @@ void check_conflicts(const Dialect& dialect, const Block& block) {
     for (int j = 0; j < i; ++j) {
       const Word& first = block.words[static_cast<std::size_t>(j)];
       if (first.g == nullptr) continue;
-      if (first.g->group == second.g->group || dialect.conflict(first.g->number, second.g->number))
-        fail(Fault::g_conflict, second.column,
-             {std::to_string(first.g->number), std::to_string(second.g->number)});
+      const bool replaced = dialect.last_mode_counts && first.g->function != Function::own &&
+                            second.g->function != Function::own;
+      if ((first.g->group == second.g->group && !replaced) ||
+          dialect.conflict(first.g->number, second.g->number))
+        fail(Fault::g_conflict, second.column, {g_name(first.g->number), g_name(second.g->number)});
     }
   }
   name_later_g(block);
@@ -144,8 +147,8 @@ void check_word(const Dialect& dialect, Block& block, Word& word, Met& met) {
   }
   const std::uint64_t bit = std::uint64_t{1} << (word.letter - 'A');
   const bool again = (met.letters & bit) != 0;
-  const bool allowed =
-      dialect.letters[static_cast<unsigned char>(word.letter)].twice && (met.twice & bit) == 0;
+  const LetterRule& rule = dialect.letters[static_cast<unsigned char>(word.letter)];
+  const bool allowed = rule.many || (rule.twice && (met.twice & bit) == 0);
   if (again && !allowed) fail(Fault::word_twice, word.column, {std::string(1, word.letter)});
   if (again) met.twice |= bit;
   met.letters |= bit;
@@ -173,6 +176,15 @@ void read_arguments(BlockText& text, Word& word) {
   ++text.pos;
 }
 
+/// G07.1: a number of its own.
+void read_g_point(Word& word) {
+  const double whole = std::floor(word.value.number), digit = (word.value.number - whole) * 10.0;
+  if (whole < kPointInG && std::abs(digit - std::round(digit)) < 1e-6 && !word.value.negative) {
+    word.value.number = whole + kPointInG * std::round(digit);
+    word.value.fraction = false;
+  }
+}
+
 /// The number of a plain word: judged here where it is written out.
 void read_plain(BlockText& text, const LetterRule& rule, Word& word) {
   const std::size_t start = word.column - 1u;
@@ -185,6 +197,7 @@ void read_plain(BlockText& text, const LetterRule& rule, Word& word) {
   if (word.value.expression != 0) return;
   if (word.value.parameter >= 0) return check_parameter(text.dialect, rule.parameters, name, word.value);
   if (word.value.bare && !rule.bare) check_bare(text.dialect, rule, text.block, word, text.pos);
+  if (rule.meaning == Meaning::g && word.value.fraction && text.dialect.lexis.point_in_g) read_g_point(word);
   if (is_whole(rule.meaning) && (word.value.fraction || word.value.negative))
     fail(Fault::whole_number, word.value.column,
          {std::string(name),
@@ -255,9 +268,13 @@ void read_word(BlockText& text, Word& word) {
   word.letter = c;
   word.meaning = rule.meaning;
   if (rule.meaning == Meaning::number) fail_prefix(dialect, word.column, c);
-  if (rule.meaning == Meaning::axis) word.axis = static_cast<std::int8_t>(axis_of(text, c, word.column));
+  const char axis = rule.axis != 0 ? rule.axis : c;
+  if (rule.meaning == Meaning::axis)
+    word.axis =
+        static_cast<std::int8_t>(rule.other ? text.axes.find(axis) : axis_of(text, axis, word.column));
   if (rule.meaning == Meaning::centre_of)
-    word.axis = static_cast<std::int8_t>(axis_of(text, rule.axis, word.column));
+    word.axis = static_cast<std::int8_t>(rule.many ? text.axes.find(rule.axis)
+                                                   : axis_of(text, rule.axis, word.column));
   ++text.pos;
   if (rule.rule != nullptr) {
     word.rule = rule.rule;
@@ -265,6 +282,7 @@ void read_word(BlockText& text, Word& word) {
     return read_by_rule(text, word);
   }
   read_plain(text, rule, word);
+  if (rule.meaning == Meaning::axis && rule.axis != 0) word.value.dimension = Dimension::incremental;
   if (dialect.lexis.bracket == Bracket::argument && rule.meaning == Meaning::g && text.peek() == '(')
     read_arguments(text, word);
 }
@@ -303,6 +321,12 @@ void read_words(const Dialect& dialect, const AxisLetters& axes, Block& block) {
   Met met;
   BlockText text{dialect, axes, block, block.line.substr(0, block.end), block.body};
   for (skip_comments(text); text.pos < block.end; skip_comments(text)) {
+    if (dialect.lexis.skip_anywhere && text.line[text.pos] == dialect.lexis.skip) {
+      const std::uint8_t level = read_skip_level(dialect.lexis, text.line, text.pos);
+      if ((block.levels_left_out >> level & 1u) == 0) continue;
+      block.end = block.count == 0 ? block.body : block.words[block.count - 1u].end;
+      break;
+    }
     if (block.count == Block::kMaxWords)
       fail(Fault::too_many_words, text.column(), {std::to_string(Block::kMaxWords)});
     Word& word = block.words[block.count];

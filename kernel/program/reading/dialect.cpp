@@ -21,6 +21,11 @@ bool same_letters(std::string_view written, std::string_view name) {
 
 }  // namespace
 
+std::string g_name(int number) {
+  if (number < kPointInG) return std::to_string(number);
+  return std::to_string(number % kPointInG) + "." + std::to_string(number / kPointInG);
+}
+
 const GRule* Dialect::find_g(int number) const noexcept {
   const GRule* rule = find_in(g, number, &GRule::number);
   return rule == nullptr ? other_g : rule;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "kernel/program/faults/texts.hpp"
@@ -13,6 +14,7 @@ namespace servogate::program {
 
 class Execution;
 class Source;
+struct MachineModel;
 struct Block;
 struct BlockText;
 struct BlockWords;
@@ -77,9 +79,11 @@ struct LetterRule {
   ParameterKind parameters = ParameterKind::none;
   double min = 0.0;
   double max = 0.0;
-  bool twice = false;              ///< may stand in a block a second time
-  bool bare = false;               ///< may stand without a number
-  char axis = 0;                   ///< of Meaning::centre_of
+  bool twice = false;  ///< may stand in a block a second time
+  bool bare = false;   ///< may stand without a number
+  bool many = false;   ///< may stand any number of times; the language judges it
+  bool other = false;  ///< of Meaning::axis: may name no axis of the machine; the language judges it
+  char axis = 0;       ///< of Meaning::centre_of; of Meaning::axis: increments of that axis
   const WordRule* rule = nullptr;  ///< of Meaning::statement
 };
 
@@ -126,6 +130,11 @@ enum class Function : std::uint8_t {
   cycle_off,
 };
 inline constexpr std::size_t kFunctions = static_cast<std::size_t>(Function::cycle_off) + 1;
+
+/// G words with a point have numbers of their own: 1000 times the digit behind it and the number, G07.1 is
+/// 1007.
+std::string g_name(int number);
+inline constexpr int kPointInG = 1000;
 
 /// One G word: `group` is a letter of the manual's table, two words of a group exclude one another.
 struct GRule {
@@ -200,6 +209,8 @@ struct Lexis {
   bool g_first = false;              ///< G words stand before coordinates
   bool tool_with_corrector = false;  ///< T3.12
   bool comment_behind_words = true;  ///< the old control knows it, too
+  bool skip_anywhere = false;        ///< the rest of the block behind a skip mark is left out
+  bool point_in_g = false;           ///< G07.1, see g_name()
 };
 
 /// How the centre of an arc is given.
@@ -302,6 +313,18 @@ struct Dialect {
   void (*thread)(Execution&, const BlockWords&) = nullptr;
   double (*system)(const Execution&, int number, int column) = nullptr;  ///< a value of the control
   int (*corrector)(int tool, int number) = nullptr;  ///< row of the table; null: the number itself
+  /// Of two modes of a group the last one of the block counts.
+  bool last_mode_counts = false;
+  bool side_changes =
+      false;  ///< of the radius compensation, without an end between; its end leads to the path
+  /// Looks at what a block asks for before anything of it is executed: numbers by the modes in force,
+  /// functions that last over several blocks.
+  void (*arrange)(Execution&, BlockWords&) = nullptr;
+  /// The language with which programs begin on a machine; null: this one.
+  const Dialect& (*begins)(const MachineModel&) = nullptr;
+  /// The language of the lines behind this one; null: the same. `first`: it is the first line of a
+  /// subprogram.
+  const Dialect* (*speaks)(const MachineModel&, std::string_view line, bool first) = nullptr;
 
   const GRule* find_g(int number) const noexcept;
   const MRule* find_m(int code) const noexcept;

@@ -43,6 +43,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
   model.arc_feed = static_cast<program::ArcFeed>(machine.control.arc_feed);
   model.k_bytes = static_cast<std::uint32_t>(machine.control.k_size);
   model.syvar_bytes = static_cast<std::uint32_t>(machine.control.syvar_size);
+  model.kind = static_cast<program::MachineModel::Kind>(machine.control.kind);
   model.power_on = machine.control.power_on;
   model.variables = machine.control.variables;
   for (const machine::OwnCodeConfig& c : machine.own_codes)

@@ -142,6 +142,10 @@ void Contour::take(ContourElement e) {
     if (returns) state_.shift = {};
     hold(std::move(e), from);
   }
+  if (state_.coming.kind != CornerWord::Kind::none) {
+    state_.corner = std::exchange(state_.coming, CornerWord{});
+    return;
+  }
   if (state_.mode == ContourState::Mode::off && !corner_ahead()) flush();
 }
 

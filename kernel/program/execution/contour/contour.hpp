@@ -26,7 +26,10 @@ class Contour {
         arc_feed_(arc_feed) {}
 
   /// Nothing is kept back, and nothing has to be: a motion can be given as it is.
-  bool idle() const { return !state_.engaged() && !state_.shifted() && !corner_ahead(); }
+  bool idle() const {
+    return !state_.engaged() && !state_.shifted() && state_.coming.kind == CornerWord::Kind::none &&
+           !corner_ahead();
+  }
   bool engaged() const noexcept { return state_.engaged(); }
   bool compensates() const noexcept { return state_.mode == ContourState::Mode::on; }
 
@@ -39,6 +42,8 @@ class Contour {
   void take(ContourElement element);
   /// The next element follows with this in between.
   void corner(CornerWord word);
+  /// The same of a word in the block of the element before it.
+  void corner_behind(CornerWord word) { state_.coming = std::move(word); }
   /// The next element continues a closed contour whose last element is this one.
   void begin_behind(const ContourElement& last) { state_.before = last; }
   /// A command keeps its place behind what is kept back.

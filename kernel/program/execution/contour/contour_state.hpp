@@ -55,8 +55,9 @@ struct ContourState {
   Point from;                                                 ///< where the tool's centre begins `held`
   std::vector<std::variant<Command, ContourElement>> behind;  ///< what comes between `held` and the next one
   CornerWord corner;
-  Point shift;      ///< of the tool's centre from the programmed point where nothing is held
-  Position last{};  ///< end of the last command given while engaged
+  CornerWord coming;  ///< of the block that is executed: stands behind its element
+  Point shift;        ///< of the tool's centre from the programmed point where nothing is held
+  Position last{};    ///< end of the last command given while engaged
 
   bool engaged() const noexcept { return mode != Mode::off || held.has_value(); }
   bool shifted() const noexcept { return shift.x != 0.0 || shift.y != 0.0; }

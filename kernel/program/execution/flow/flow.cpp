@@ -114,7 +114,7 @@ void Flow::call(std::string_view name, int times, int column) {
     auto loaded = files_.loader ? files_.loader(name) : std::nullopt;
     if (!loaded) fail(Fault::program_missing, column, {std::string(name)});
     files_.sources.push_back(std::make_shared<const Source>(
-        dialect_, std::string(name), std::move(loaded->text), std::move(loaded->path)));
+        *files_.language, std::string(name), std::move(loaded->text), std::move(loaded->path)));
     files_.names.emplace_back(name);
   }
   FlowState::Call entered;
@@ -143,7 +143,7 @@ void Flow::enter_text(const std::string& name, std::string_view text) {
     files_.sources.emplace_back();
   }
   files_.sources[static_cast<std::size_t>(state_.file)] =
-      std::make_shared<const Source>(dialect_, name, std::string(text));
+      std::make_shared<const Source>(*files_.language, name, std::string(text));
 }
 
 }  // namespace servogate::program

@@ -16,6 +16,7 @@ namespace servogate::program {
 /// The files met so far, the main program first; their numbers are those of Command::file.
 struct ProgramFiles {
   ProgramLoader loader;
+  const Dialect* language = nullptr;  ///< in which all of them are looked through
   std::vector<std::shared_ptr<const Source>> sources;
   std::vector<std::string> names;
 };

@@ -139,13 +139,15 @@ void Frames::use_origin(int number, int column) {
 }
 
 double Frames::tool_radius() const {
-  const auto row = state_.tables->correctors.find(state_.active_corrector);
+  const auto row =
+      state_.tables->correctors.find(state_.radius_row >= 0 ? state_.radius_row : state_.active_corrector);
   return row == state_.tables->correctors.end() ? 0.0 : row->second.radius + row->second.radius_wear;
 }
 
 void Frames::use_lengths(int row) {
   if (state_.lengths_off) row = 0;
   state_.active_corrector = row;
+  if (state_.lengths_by_language) return;
   const auto& correctors = state_.tables->correctors;
   const auto entry = correctors.find(row);
   for (int a = 0; a < machine_.axis_count(); ++a) {

@@ -37,7 +37,10 @@ struct MachineModel {
     bool is_virtual = false;     ///< no axis of the machine: programs name it while real ones follow it
     int index_positions = 0;     ///< programs count positions, so many in a turn; 0: they give degrees
   };
+  /// For languages that have words of their own for each; `by_axes`: turning where an axis counts diameters.
+  enum class Kind : std::uint8_t { by_axes, turning, milling };
   std::vector<Axis> axes;
+  Kind kind = Kind::by_axes;
   int spindles = 1;
   double spindle_min_rpm = 0.0;  ///< of the spindle that S speaks to; 0: as slow as one likes
   double spindle_max_rpm = 0.0;  ///< 0: not known, S is not compared with it
@@ -66,6 +69,11 @@ struct MachineModel {
   std::uint32_t syvar_bytes = image::kSyvarDefaultSize;
 
   int axis_count() const noexcept { return static_cast<int>(axes.size()); }
+  bool turns() const noexcept {
+    bool diameters = false;
+    for (const Axis& axis : axes) diameters = diameters || axis.diameter;
+    return kind == Kind::by_axes ? diameters : kind == Kind::turning;
+  }
   bool is_virtual(int axis) const noexcept { return axes[static_cast<std::size_t>(axis)].is_virtual; }
   /// Axes that the machine has; virtual ones stand behind them.
   int real_axes() const noexcept {

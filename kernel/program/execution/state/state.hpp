@@ -117,6 +117,8 @@ struct FramesState {
   std::int32_t corrector = 0;
   std::int32_t active_corrector = 0;  ///< whose lengths and radius are in force
   bool lengths_off = false;           ///< those of no corrector, until the program says otherwise
+  bool lengths_by_language = false;   ///< a tool change leaves the lengths alone: words of their own set them
+  std::int32_t radius_row = -1;       ///< whose radius is in force, -1: that of `active_corrector`
   std::shared_ptr<const Tables> tables;
   std::array<ProtectedZone, 3> zones{};
   bool zones_active = false;
@@ -172,7 +174,7 @@ struct State {
   GeometricElements elements;
   OpenRecords records;
   ProbingState probing;
-  std::array<double, 64> own{};   ///< values that the language keeps for itself, by its own numbers
+  std::array<double, 320> own{};  ///< values that the language keeps for itself, by its own numbers
   std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit
   int optional_stop = -1;         ///< -1: left to the operator's switch
   long long executed = 0;

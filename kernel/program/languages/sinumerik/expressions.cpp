@@ -6,6 +6,7 @@
 
 #include "kernel/program/faults/texts.hpp"
 #include "kernel/program/geometry/degrees.hpp"
+#include "kernel/program/languages/sinumerik/iso/iso.hpp"
 #include "kernel/program/languages/sinumerik/sinumerik.hpp"
 #include "kernel/program/values/number.hpp"
 
@@ -53,14 +54,31 @@ constexpr FunctionRow kFunctions[] = {
 };
 constexpr std::string_view kLater[] = {"NOT", "XOR"};
 
-/// R7; variables of the system are not read in this version.
+/// $C_X, $C_I[0], $AA_MW[X]; other variables of the system are not read in this version.
+bool system_variable(std::string_view line, std::size_t& pos, const ValueSource* source, double& value) {
+  const int column = static_cast<int>(pos) + 1;
+  std::size_t end = pos + 1;
+  while (end < line.size() && (is_letter(line[end]) || is_digit(line[end]) || line[end] == '_')) ++end;
+  const std::string name = in_capitals(line.substr(pos, end - pos));
+  int number = iso::system_number(name, -1);
+  if (end < line.size() && line[end] == '[') {
+    std::size_t inside = end + 1;
+    const bool axis = inside < line.size() && is_letter(line[inside]);
+    number = axis ? iso::measured_number(name, capital(line[inside++]))
+                  : iso::system_number(name, read_index(line, inside));
+    if (inside >= line.size() || line[inside] != ']') fail(Fault::expected, column, {"]"});
+    end = inside + 1;
+  }
+  if (number < 0) fail(Fault::not_executed, column, {name});
+  pos = end;
+  if (source != nullptr) value = source->system(number, column);
+  return true;
+}
+
+/// R7 and variables of the system.
 bool variable(std::string_view line, std::size_t& pos, const ValueSource* source, double& value) {
   const int column = static_cast<int>(pos) + 1;
-  if (line[pos] == '$') {
-    std::size_t end = pos + 1;
-    while (end < line.size() && (is_letter(line[end]) || is_digit(line[end]) || line[end] == '_')) ++end;
-    fail(Fault::not_executed, column, {std::string(line.substr(pos, end - pos))});
-  }
+  if (line[pos] == '$') return system_variable(line, pos, source, value);
   std::size_t at = pos + 1;
   if (capital(line[pos]) != 'R' || at == line.size() || !is_digit(line[at])) return false;
   const int index = read_index(line, at);

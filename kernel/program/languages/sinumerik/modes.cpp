@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/languages/sinumerik/iso/iso.hpp"
 #include "kernel/program/languages/sinumerik/sinumerik.hpp"
 
 namespace servogate::program::sinumerik {
@@ -37,5 +38,13 @@ void coarse_stop(Execution& run, BlockWords&, const Word& word) { windows(run, w
 void feed_of_contour(Execution& run, const Word&) { run.state().motion.arc_feed = ArcFeed::contour; }
 void feed_of_centre(Execution& run, const Word&) { run.state().motion.arc_feed = ArcFeed::tool_centre; }
 void feed_of_inside(Execution& run, const Word&) { run.state().motion.arc_feed = ArcFeed::inside; }
+
+void to_iso(Execution& run, const BlockWords& words) {
+  for (std::size_t i = 0; i < run.block().count; ++i)
+    if (&run.block().words[i] != words.instead_word)
+      fail(iso::Wrong::switch_alone, run.block().words[i].column, {"G291"});
+  run.motion().end_profile();
+  run.speak(iso::dialect(run.machine()));
+}
 
 }  // namespace servogate::program::sinumerik

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/program/languages/sinumerik/sinumerik.hpp"
 
+#include <algorithm>
+
+#include "kernel/program/languages/sinumerik/iso/iso.hpp"
+
 namespace servogate::program::sinumerik {
 namespace {
 
@@ -59,7 +63,7 @@ constexpr GRule kG[] = {
     {.number = 247, .group = 'o', .function = Function::later},
     {.number = 248, .group = 'o', .function = Function::later},
     {.number = 290, .group = 'i', .function = Function::nothing},
-    {.number = 291, .group = 'i', .function = Function::later},
+    {.number = 291, .group = 'i', .function = Function::own, .motion = to_iso},
     {.number = 347, .group = 'o', .function = Function::later},
     {.number = 348, .group = 'o', .function = Function::later},
     {.number = 450, .group = 'k', .function = Function::nothing},
@@ -111,6 +115,12 @@ constexpr std::array<LetterRule, 128> letters() {
   return rules;
 }
 
+/// G291 among the words of power-on: programs begin in the ISO dialect.
+const Dialect& begins(const MachineModel& machine) {
+  const auto& words = machine.power_on;
+  return std::find(words.begin(), words.end(), "G291") == words.end() ? dialect() : iso::dialect(machine);
+}
+
 const Dialect kDialect = {
     .name = "sinumerik-808d",
     .lexis = {.skip_levels = true,
@@ -137,11 +147,14 @@ const Dialect kDialect = {
     .g = kG,
     .m = kM,
     .words = words(),
-    .variables = {},
+    .variables = iso::settings(),
     .conflict = [](int, int) { return false; },
     .value = value_in_place_of_number,
     .judge = judge,
+    .system = iso::system_value,
     .corrector = [](int tool, int number) { return 10 * tool + number; },
+    .begins = begins,
+    .speaks = iso::speaks,
 };
 
 }  // namespace

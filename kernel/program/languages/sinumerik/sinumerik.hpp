@@ -40,6 +40,9 @@ void feed_of_contour(Execution& run, const Word& word);
 void feed_of_centre(Execution& run, const Word& word);
 void feed_of_inside(Execution& run, const Word& word);
 
+/// G291: the blocks behind it are read in the ISO dialect.
+void to_iso(Execution& run, const BlockWords& words);
+
 Expressions expressions();
 ParameterSet parameters();
 

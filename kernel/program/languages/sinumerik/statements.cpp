@@ -162,6 +162,25 @@ void diameter_absolute(Execution& run, const Word&) {
 }
 void radius(Execution& run, const Word&) { run.state().modes.across = Function::radius; }
 
+/// PROC NAME SAVE DISPLOF: what the caller displays is no matter of the program.
+void read_proc(BlockText& text, Word& word) {
+  word.text_begin = word.text_end = 0;
+  text.peek();
+  if (name_at(text.line, text.pos).empty()) fail(Fault::expected, text.column(), {text::both("name", "имя")});
+  while (text.peek() != '\0') {
+    const std::size_t start = text.pos;
+    const std::string name = in_capitals(name_at(text.line, text.pos));
+    if (name == "SAVE")
+      word.text_end = 1;
+    else if (name != "DISPLOF" && name != "SBLOF")
+      fail(Fault::expected, static_cast<int>(start) + 1, {"SAVE, DISPLOF"});
+  }
+}
+
+void begin_proc(Execution& run, const Word& word) {
+  if (word.text_end != 0) run.keep_modes();
+}
+
 constexpr WordRule kWords[] = {
     {.name = "CR", .meaning = Meaning::radius},
     {.name = "RPL", .meaning = Meaning::angle},
@@ -211,7 +230,7 @@ constexpr WordRule kWords[] = {
     {.name = "COMPCURV"},
     {.name = "COMPCAD"},
     {.name = "COMPOF"},
-    {.name = "PROC"},
+    {.name = "PROC", .read = read_proc, .run = begin_proc},
     {.name = "EXTERN"},
     {.name = "DEF"},
     {.name = "SAVE"},

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "kernel/program/languages/sinumerik/iso/iso.hpp"
+#include "kernel/program/languages/sinumerik/sinumerik.hpp"
+
+namespace servogate::program::sinumerik::iso {
+namespace {
+
+constexpr std::uint32_t bit_of(char letter) { return is_capital(letter) ? 1u << (letter - 'A') : 0u; }
+
+/// B is an output to the PLC where it is no axis (specification 12.3).
+void without_axis(Execution& run, BlockWords& words, const Word& word) {
+  if (word.letter != 'B') fail(Fault::axis_missing, word.column, {std::string(1, word.letter)});
+  run.numbers().whole(word.value, "B");
+  words.h = &word;
+}
+
+/// The letters of the block; what reading has left to the language is judged.
+std::uint32_t look(Execution& run, BlockWords& words) {
+  const Block& block = run.block();
+  std::uint32_t letters = 0, axes = 0;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const Word& word = block.words[i];
+    const std::uint32_t bit = bit_of(word.letter);
+    const bool twice = (letters & bit) != 0 && word.meaning == Meaning::centre_of;
+    letters |= bit;
+    if (word.meaning == Meaning::axis && word.axis < 0) {
+      without_axis(run, words, word);
+      continue;
+    }
+    const std::uint32_t axis = word.meaning == Meaning::axis ? 1u << word.axis : 0u;
+    if (twice || (axes & axis) != 0) fail(Fault::word_twice, word.column, {std::string(1, word.letter)});
+    axes |= axis;
+  }
+  return letters;
+}
+
+constexpr std::uint32_t kSeldom = bit_of('P') | bit_of('Q') | bit_of('L') | bit_of('H') | bit_of('D') |
+                                  bit_of('E') | bit_of('O') | bit_of('T') | bit_of('M');
+
+/// What `instead` does not take in a block without one.
+bool stray_left(const BlockWords& words, std::uint32_t letters, std::uint32_t taken) {
+  return words.for_instead && (letters & ~taken & kSeldom & ~bit_of('T') & ~bit_of('M')) != 0;
+}
+
+}  // namespace
+
+void arrange(Execution& run, BlockWords& words) {
+  State& state = run.state();
+  if (state.contour.coming.kind != CornerWord::Kind::none) run.contour().corner_behind({});
+  if (take_macro(run, words)) return;
+  scale_numbers(run, words);
+  const std::uint32_t letters = look(run, words);
+  if (words.feed != nullptr && run.numbers().resolve(words.feed->value) <= 0.0)
+    fail(Wrong::feed_zero, words.feed->column, {text::number(words.feed->value.number)});
+  if ((letters & kSeldom) != 0) {
+    arrange_tool(run, words);
+    arrange_calls(run, words);
+    arrange_offset(run, words);
+  }
+  if (words.instead == nullptr) {
+    arrange_polar(run, words);
+    arrange_angle(run, words);
+    std::uint32_t taken = 0;
+    if (state.modes.motion == Function::thread && words.axes > 0) taken |= bit_of('Q');
+    if (words.statement_count > 0) taken |= bit_of('P') | bit_of('L');
+    if (value(state, own::length_sign) != 0.0) taken |= bit_of('H');
+    if (!run.machine().turns()) taken |= bit_of('D');
+    if (find(run.block(), 'G') != nullptr && find(run.block(), 'P') != nullptr && words.count == nullptr)
+      taken |= bit_of('P');
+    words.for_instead = stray_left(words, letters, taken);
+  }
+  const bool calls = value(state, own::macro) != 0.0 && words.axes > 0 && words.instead == nullptr;
+  if (calls && !is_macro_program(run, 2.0)) arrange_calls(run, words);
+}
+
+/// G290 and G291 act behind their line; PROC makes a subprogram one of the Siemens mode.
+const Dialect* speaks(const MachineModel& machine, std::string_view line, bool first) {
+  std::size_t pos = skip_spaces(line, 0);
+  const auto takes = [&](std::string_view word) {
+    for (std::size_t i = 0; i < word.size(); ++i)
+      if (pos + i >= line.size() || capital(line[pos + i]) != word[i]) return false;
+    const std::size_t end = pos + word.size();
+    return end == line.size() || (!is_digit(line[end]) && !is_letter(line[end]) && line[end] != '.');
+  };
+  if (first) return takes("PROC") ? &sinumerik::dialect() : nullptr;
+  if (pos < line.size() && capital(line[pos]) == 'N') {
+    ++pos;
+    if (read_index(line, pos) < 0) return nullptr;
+    pos = skip_spaces(line, pos);
+  }
+  if (takes("G290")) return &sinumerik::dialect();
+  return takes("G291") ? &dialect(machine) : nullptr;
+}
+
+}  // namespace servogate::program::sinumerik::iso

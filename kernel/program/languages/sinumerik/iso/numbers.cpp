@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/program/languages/sinumerik/iso/iso.hpp"
+
+/// Numbers without a point in standard notation (MD10884 = 0; specification 1.5, tables 1-1 and 2-1).
+namespace servogate::program::sinumerik::iso {
+namespace {
+
+struct Factors {
+  double linear, rotary, feed;
+};
+
+Factors factors_of(const Execution& run) {
+  const State& state = run.state();
+  const bool inch = state.modes.unit == Function::inch, finer = setting(run, "MD10886") == 1.0;
+  const double finest = finer ? 0.1 : 1.0;
+  Factors f{(inch ? 0.0001 : 0.001) * finest, 0.001 * finest, 1.0};
+  const bool turns = run.machine().turns();
+  const bool lead = turns && state.modes.motion == Function::thread;
+  if (lead || (turns && bit(run, 8) && state.modes.feed == Function::feed_revolution))
+    f.feed = inch ? 0.000001 : 0.0001;
+  else if (state.modes.feed == Function::feed_revolution)
+    f.feed = inch ? 0.0001 : 0.01;
+  else if (state.modes.feed == Function::feed_minute && inch)
+    f.feed = 0.01;
+  return f;
+}
+
+}  // namespace
+
+void scale_numbers(Execution& run, const BlockWords& words) {
+  if (setting(run, "MD10884") != 0.0) return;
+  if (words.instead == dwell) return;  // counts ms in X, U and P
+  const Factors f = factors_of(run);
+  Block& block = run.block();
+  for (std::size_t i = 0; i < block.count; ++i) {
+    Word& word = block.words[i];
+    if (word.value.fraction || word.value.expression != 0) continue;
+    switch (word.meaning) {
+      case Meaning::axis:
+        word.value.number *= word.axis >= 0 && run.machine().rotary(word.axis) ? f.rotary : f.linear;
+        break;
+      case Meaning::centre_of:
+      case Meaning::radius:
+        word.value.number *= f.linear;
+        break;
+      case Meaning::feed:
+        word.value.number *= f.feed;
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+}  // namespace servogate::program::sinumerik::iso
