@@ -469,7 +469,8 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
   std::string files;
   for (const std::string* path : {&options_.html, &options_.report, &options_.trace, &options_.record,
                                   &options_.can_log, &options_.capture.file})
-    if (!path->empty()) files += (files.empty() ? "" : ", ") + *path;
+    if (!path->empty() && (path != &options_.capture.file || machine_->captured()))
+      files += (files.empty() ? "" : ", ") + *path;
   if (!files.empty() && !infrastructure_) tell(say(kWritten, {files}));
 }
 

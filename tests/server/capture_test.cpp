@@ -95,10 +95,17 @@ TEST_F(Capture, begins_before_its_trigger_and_ends_behind_it) {
   EXPECT_GT(a["channels"][0]["most"].get<double>(), 15.0);
 }
 
+TEST_F(Capture, whose_trigger_does_not_come_leaves_no_file_and_says_so) {
+  const Outcome o = run({"--capture", file("a.mcap"), "--trigger", "X.cmd > 1000"});
+  EXPECT_EQ(o.exit, 0);
+  EXPECT_TRUE(contains(o.err, "the trigger did not come")) << o.err;
+  EXPECT_FALSE(std::filesystem::exists(file("a.mcap")));
+}
+
 TEST_F(Capture, of_everything_holds_everything_that_has_a_number) {
   ASSERT_EQ(run({"--capture", file("a.mcap"), "--channels", "all"}).exit, 0);
   const json a = about("a.mcap");
-  EXPECT_GT(a["channels"].size(), 300u);
+  EXPECT_GT(a["channels"].size(), 200u);
   std::size_t axes = 0;
   for (const json& c : a["channels"]) axes += c["name"].get<std::string>().starts_with("X.") ? 1 : 0;
   EXPECT_GE(axes, 16u);

@@ -22,6 +22,8 @@ constexpr image::Nanoseconds kPublished =
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr int kFirstLooks = 200;
 
+const text::Entry kNotTriggered{"capture.not-triggered", "{0} was not written: the trigger did not come",
+                                "файл {0} не записан: событие не наступило"};
 const text::Entry kVirtualNeedsMock{
     "cli.virtual-needs-mock", "'{0}' is a real bus: virtual time is for mock buses only; use --realtime",
     "«{0}» — настоящая шина: виртуальное время только для имитаций; нужен --realtime"};
@@ -153,6 +155,8 @@ std::vector<RunningMachine::Lost> RunningMachine::close_files() {
   if (can_log_ != nullptr) note(settings_.can_log, can_log_->close());
   for (const auto& capture : {capture_.get(), black_box_.get()})
     if (capture != nullptr) note(capture->path(), capture->close());
+  if (capture_ != nullptr && !captured() && settings_.announce)
+    settings_.announce(kNotTriggered, {capture_->path()});
   return lost;
 }
 

@@ -70,6 +70,8 @@ class RunningMachine final : public bench::Machine {
   Session& watch(const Outputs& outputs);
   /// A capture of chosen values from the next cycle on. Before the first. False: refused, `why` says why.
   bool capture(const CaptureRequest& request, drivers::Notice& why);
+  /// After close_files(): the capture has written its file.
+  bool captured() const noexcept { return capture_ != nullptr && capture_->files() > 0; }
   /// Writes the last seconds into `folder` at each alarm. Before the first cycle.
   void keep_black_box(const std::string& folder);
   /// Starts the loop of a machine that moves by itself; nothing in virtual time without a pace. False: the

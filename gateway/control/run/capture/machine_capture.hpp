@@ -33,6 +33,8 @@ class MachineCapture final : public FrameObserver {
   /// Ends the files. What went wrong (also: values were lost), empty: nothing.
   std::string close();
   const std::string& path() const noexcept { return path_; }
+  /// After close(): files that were written; 0: the trigger did not come.
+  int files() const noexcept { return recorder_->files(); }
 
  private:
   MachineCapture(Control& control, MachineChannels channels, std::string path);
