@@ -342,6 +342,55 @@ TEST(Thread, whose_master_is_further_off_than_its_window_is_left_by_the_declared
       MasterFault::window, [](Lathe& m) { m.spindle.load = [](double) { return 30.0; }; }, 0.002);
 }
 
+TEST(Thread, whose_master_is_lost_while_it_runs_in_is_left_and_while_it_brakes_ends_at_its_end) {
+  for (const bool runs_in : {true, false}) {
+    Lathe m;
+    m.add(thread_to(0, -60, 1.5));
+    m.planner.finish();
+    const double z = runs_in ? -0.05 : -59.8;
+    ASSERT_TRUE(m.until([&](const Sample& s) { return s.position[2] < z; }));
+    m.spindle.readable = false;
+    ASSERT_TRUE(m.until(
+        [](const Sample& s) { return s.state == FollowerState::stopped || s.state == FollowerState::idle; }));
+    const Sample& last = m.trip.samples.back();
+    EXPECT_EQ(last.state, runs_in ? FollowerState::stopped : FollowerState::idle);
+    EXPECT_NEAR(last.position[0], runs_in ? 2.0 : 0.0, 1e-9);
+    EXPECT_TRUE(runs_in || std::abs(last.position[2] + 60.0) < 1e-9);
+    EXPECT_LE(m.limits(), 1.001);
+  }
+}
+
+TEST(Tap, whose_master_is_lost_slows_down_on_its_line_in_each_phase) {
+  for (const double z : {-0.05, -10.0, -19.5}) {
+    for (const bool out : {false, true}) {
+      Lathe m;
+      Element in = thread_to(0, -20.0, 1.25);
+      in.lock.kind = Lock::Kind::tap_in;
+      in.transition.continuation = Continuation::exact_stop;
+      Element back = in;
+      back.to = {};
+      back.lock.kind = Lock::Kind::tap_out;
+      m.add(in);
+      m.add(back);
+      m.planner.finish();
+      bool turned = false;
+      ASSERT_TRUE(m.until([&](const Sample& s) {
+        if (s.master.reverse) m.spindle.wanted = -10.0;
+        turned = turned || m.spindle.w < -5.0;
+        return out ? turned && s.position[2] > z : s.position[2] < z;
+      })) << z
+          << out;
+      m.spindle.readable = false;
+      ASSERT_TRUE(m.until([](const Sample& s) {
+        return s.state == FollowerState::stopped || s.state == FollowerState::idle;
+      })) << z
+          << out;
+      EXPECT_EQ(m.trip.samples.back().position[0], 0.0) << "a tap is not pulled aside";
+      EXPECT_LE(m.limits(), 1.001) << z << out;
+    }
+  }
+}
+
 TEST(Thread, that_is_stopped_is_left_by_the_declared_way_and_goes_on_from_there) {
   Lathe m;
   m.add(thread_to(0, -60, 1.5));
