@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "kernel/channel/alarms/master_alarms.hpp"
 #include "tests/channel/rig.hpp"
@@ -66,7 +67,13 @@ TEST(ThreadProgram, takes_no_notice_of_the_feed_override_and_of_a_spindle_under_
   ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
   rig.ask(RequestKind::override_feed, 0.2);
   rig.drives.slip = 0.1;
+  rig.run(0.8);
+  const double while_slowing = std::exchange(rig.worst, 0.0);
   ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  const double bound = path::phase_bound({0.001, 0.002, 4096.0, 1.0, 20.0}, 1.5);
+  std::printf("under load: %.2f um off while the spindle slows down, bound %.2f um\n", while_slowing * 1e3,
+              bound * 1e3);
+  EXPECT_LE(while_slowing, bound);
   EXPECT_LE(rig.worst, 0.010) << "at a tenth less, the lead is the same";
   EXPECT_EQ(rig.violations(), "");
 }
