@@ -143,6 +143,7 @@ const Dialect kDialect = {
     .max_m_words = 5,
     .max_repeat_depth = 0,
     .max_call_depth = 8,
+    .virtual_axes = "uvw",
     .letters = letters(),
     .g = kG,
     .m = kM,

@@ -16,6 +16,12 @@ void without_axis(Execution& run, BlockWords& words, const Word& word) {
   words.h = &word;
 }
 
+/// Of the turning cycles U and W are lengths, whether there are such axes or not; of G10 C is one.
+bool takes_any_letter(const BlockWords& words) {
+  return words.instead == rough_along || words.instead == rough_across || words.instead == repeat_pattern ||
+         words.instead == write_data;
+}
+
 /// The letters of the block; what reading has left to the language is judged.
 std::uint32_t look(Execution& run, BlockWords& words) {
   const Block& block = run.block();
@@ -26,6 +32,7 @@ std::uint32_t look(Execution& run, BlockWords& words) {
     const bool twice = (letters & bit) != 0 && word.meaning == Meaning::centre_of;
     letters |= bit;
     if (word.meaning == Meaning::axis && word.axis < 0) {
+      if (words.instead != nullptr && takes_any_letter(words)) continue;
       without_axis(run, words, word);
       continue;
     }
@@ -59,6 +66,9 @@ void arrange(Execution& run, BlockWords& words) {
     arrange_calls(run, words);
     arrange_offset(run, words);
   }
+  arrange_hole(run, words);
+  arrange_turning(run, words);
+  arrange_transformation(run, words);
   if (words.instead == nullptr) {
     arrange_polar(run, words);
     arrange_angle(run, words);

@@ -55,8 +55,9 @@ constexpr text::Entry kMessages[] = {
     {"P871", "{0}: the end of the cut is missing: write {1}", "{0}: нет конца реза: задайте {1}"},
     {"P872", "{0}: at most {1} of the words {2}", "{0}: слов {2} не больше {1}"},
     {"P873", "{0} = {1}: this version has {2} alone", "{0} = {1}: в этой версии есть только {2}"},
+    {"P874, 14011", "{0} has no contour in a typed block", "{0}: во введённом кадре контура нет"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::setting_choice) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::contour_mdi) + 1);
 
 }  // namespace
 

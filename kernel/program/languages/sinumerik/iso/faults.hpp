@@ -46,6 +46,7 @@ enum class Wrong {
   target_missing,
   macro_argument,
   setting_choice,
+  contour_mdi,
 };
 
 std::span<const text::Entry> messages();

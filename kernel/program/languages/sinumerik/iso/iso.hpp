@@ -34,9 +34,16 @@ enum : std::size_t {
   hole_feed,
   hole_shift,
   hole_incremental,
+  hole_begun,
+  hole_initial,
   macro,  ///< program of G66 and 1, 0: none
   macro_passes,
-  polar,
+  finishing,  ///< G70: its contour is being worked
+  finish_feed,
+  finish_at,                      ///< 2
+  cylinder_axis = finish_at + 2,  ///< and 1, 0: none
+  pivot,                          ///< of a rotation in space: 3
+  polar = pivot + 3,
   polar_pole,                 ///< 2
   polar_at = polar_pole + 2,  ///< radius and angle
   length_sign = polar_at + 2,
@@ -145,6 +152,8 @@ void plain_motion(Execution& run, BlockWords& words, const Word& word);
 void thread_constant(Execution& run, BlockWords& words, const Word& word);
 void thread_variable(Execution& run, BlockWords& words, const Word& word);
 void thread(Execution& run, const BlockWords& words);
+/// Q in degrees, which stays in force; before it SD42000.
+double start_angle(Execution& run);
 void measure(Execution& run, const BlockWords& words);
 void ignored(Execution& run, const BlockWords& words);
 void to_initial(Execution& run, BlockWords& words, const Word& word);
@@ -207,7 +216,13 @@ void groove_along(Execution& run, const BlockWords& words);
 void groove_across(Execution& run, const BlockWords& words);
 void thread_passes(Execution& run, const BlockWords& words);
 
+/// What a program has stored at a place of own, else the machine's user data times `unit`.
+double memory(const Execution& run, std::size_t place, const char* name, double unit = 1.0);
+void remember(Execution& run, std::size_t place, double value);
+
 // transformations.cpp
+void turn_space(Execution& run, const BlockWords& words);
+void end_transformation(Execution& run);
 void cylinder(Execution& run, const BlockWords& words);
 void polar_interpolation(Execution& run, const BlockWords& words);
 void polar_interpolation_off(Execution& run, const BlockWords& words);

@@ -74,7 +74,8 @@ double longest_way(const Execution& run, const Position& to) {
   return longest;
 }
 
-/// Q, which stays in force; before it SD42000.
+}  // namespace
+
 double start_angle(Execution& run) {
   State& state = run.state();
   const Word* q = find(run.block(), 'Q');
@@ -89,8 +90,6 @@ double start_angle(Execution& run) {
   value(state, own::start_angle_set) = 1.0;
   return angle;
 }
-
-}  // namespace
 
 /// G32 and G34: the lead counts along the axis with the longer way, X as a radius (specification 7).
 void thread(Execution& run, const BlockWords& words) {

@@ -35,6 +35,7 @@ void scale_numbers(Execution& run, const BlockWords& words) {
   for (std::size_t i = 0; i < block.count; ++i) {
     Word& word = block.words[i];
     if (word.value.fraction || word.value.expression != 0) continue;
+    if (word.letter == 'K' && value(run.state(), own::hole) != 0.0) continue;  // repeats
     switch (word.meaning) {
       case Meaning::axis:
         word.value.number *= word.axis >= 0 && run.machine().rotary(word.axis) ? f.rotary : f.linear;

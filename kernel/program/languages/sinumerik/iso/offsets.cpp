@@ -27,6 +27,12 @@ void turn(double& x, double& y, double angle, double cx, double cy) {
   y = cy + dx * sin_deg(angle) + dy * cos_deg(angle);
 }
 
+/// Of a rotation in space, along X, Y and Z.
+double pivot(const Execution& run, int axis) {
+  const std::size_t n = std::string_view("XYZ").find(run.machine().axes[at(axis)].letter);
+  return n < 3 ? run.state().own[own::pivot + n] : 0.0;
+}
+
 bool mirrored(const State& state, int axis) {
   return (static_cast<unsigned>(value(state, own::mirror)) >> axis & 1u) != 0;
 }
@@ -81,8 +87,9 @@ void refresh_offsets(Execution& run) {
   }
   frame.set_rotation(std::fmod(angle + copied, 360.0));
   for (int a = 0; a < run.machine().axis_count(); ++a)
-    frame.set_offset(a, zero[at(a)] + state.own[own::copy_shift + at(a)] + state.own[own::local + at(a)] +
-                            state.own[own::preset + at(a)] + external(run, a));
+    frame.set_offset(a, zero[at(a)] + pivot(run, a) + state.own[own::copy_shift + at(a)] +
+                            state.own[own::local + at(a)] + state.own[own::preset + at(a)] +
+                            external(run, a));
   run.frames().changed();
 }
 
@@ -161,7 +168,9 @@ void scale(Execution& run, const BlockWords& words) {
     const bool named =
         find(block, 'I') != nullptr || find(block, 'J') != nullptr || find(block, 'K') != nullptr;
     if (!by_axis && p != nullptr && !named) factor = run.numbers().resolve(p->value) * weight;
-    if (factor == 0.0 || (!by_axis && factor < 0.0)) fail(Fault::scale_zero, column(words));
+    if (factor == 0.0) fail(Fault::scale_zero, column(words));
+    if (!by_axis && factor < 0.0)
+      fail(Wrong::letter_range, p->column, {g_word(run, words), "P", text::number(number(run, 'P')), "> 0"});
     frame.set_scale(axis, factor);
   }
   refresh_offsets(run);
@@ -203,9 +212,7 @@ void rotate(Execution& run, const BlockWords& words) {
   for (const char letter : {'I', 'J', 'K'})
     if (const Word* word = find(run.block(), letter); word != nullptr) {
       alone(run, words, "XYZIJKR");
-      if (number(run, 'I') == 0.0 && number(run, 'J') == 0.0 && number(run, 'K') == 0.0)
-        fail(Wrong::rotation_vector, column(words), {g_word(run, words)});
-      fail(Fault::not_executed, word->column, {g_word(run, words) + " I J K"});
+      return turn_space(run, words);
     }
   alone(run, words, "XYZR");
   run.frames().need_plane(column(words));
@@ -222,6 +229,7 @@ void rotate(Execution& run, const BlockWords& words) {
 void rotate_off(Execution& run, const BlockWords& words) {
   alone(run, words, "");
   State& state = run.state();
+  end_transformation(run);
   value(state, own::rotation) = state.own[own::rotation_at] = state.own[own::rotation_at + 1] = 0.0;
   refresh_offsets(run);
 }
