@@ -54,8 +54,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "modbus read") return command::modbus_read(line.bus.modbus_read);
   if (line.command == "modbus write") return command::modbus_write(line.bus.modbus_write);
   if (line.command == "modbus scan") return command::modbus_scan(line.bus.modbus_scan);
-  if (line.command == "bench run") return command::bench_run(line.bench_run);
-  if (line.command == "bench identify") return command::bench_identify(line.bench_identify);
+  if (line.command.starts_with("bench ")) return command::bench(line.command.substr(6), *line.bench);
   if (line.command == "pendant list") return command::pendant_list(line.bus.pendant_list);
   if (line.command == "pendant watch") return command::pendant_watch(line.bus.pendant_watch);
   if (line.command == "drive") return command::drive(line.bus.drive);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "gateway/cli/bench_options.hpp"
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/cli/plc_options.hpp"
 #include "gateway/cli/test_options.hpp"
@@ -88,6 +88,8 @@ struct BackupOptions {
   bool force = false;
 };
 
+struct BenchCommands;
+
 /// The parsed command line: the name of the command and its options.
 struct CommandLine {
   std::string command;
@@ -102,9 +104,9 @@ struct CommandLine {
   TestOptions test;
   PlcCommands plc;
   BusCommands bus;
-  BenchOptions bench_run, bench_identify;
-  bool json = false;               ///< of `version`
-  std::vector<std::string> words;  ///< the whole line, for the report
+  std::shared_ptr<BenchCommands> bench;  ///< made by parse_command_line()
+  bool json = false;                     ///< of `version`
+  std::vector<std::string> words;        ///< the whole line, for the report
 };
 
 /// Reads the command line. nullopt: help or an error was printed, `exit_code` tells which.

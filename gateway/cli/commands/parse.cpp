@@ -88,6 +88,9 @@ bool negative(std::string_view a) {
   return a == "-" || (a.size() > 1 && a[0] == '-' && (a[1] == '.' || (a[1] >= '0' && a[1] <= '9')));
 }
 
+/// `--travel` takes the word behind it, negative or not.
+bool option(std::string_view a) { return a.starts_with("--"); }
+
 void unshield(std::string& word) {
   if (word.starts_with(kShield)) word.erase(0, 1);
 }
@@ -95,8 +98,10 @@ void unshield(std::string& word) {
 /// The arguments as CLI11 wants them: last one first, without the program's name.
 std::vector<std::string> shielded(int argc, char** argv) {
   // Numbers of these may be negative, and are no options.
+  const bool bench = argc > 2 && std::string_view(argv[1]) == "bench" &&
+                     (std::string_view(argv[2]) == "move" || std::string_view(argv[2]) == "jog");
   const bool numbers =
-      argc > 1 && (std::string_view(argv[1]) == "sdo" ||
+      argc > 1 && (bench || std::string_view(argv[1]) == "sdo" ||
                    std::any_of(std::begin(kClients), std::end(kClients),
                                [&](const ClientCommand& c) { return c.name == std::string_view(argv[1]); }));
   std::vector<std::string> arguments;
@@ -106,7 +111,8 @@ std::vector<std::string> shielded(int argc, char** argv) {
     if (word == "--realtime")
       arguments.push_back(word + "=strict");
     else
-      arguments.push_back(numbers && negative(word) ? kShield + word : word);
+      arguments.push_back(numbers && negative(word) && !(bench && option(argv[i - 1])) ? kShield + word
+                                                                                       : word);
   }
   return arguments;
 }
@@ -137,7 +143,8 @@ class Commands {
     add_bus_commands(app_, line.bus);
     add_canopen_commands(app_, line.bus);
     add_modbus_commands(app_, line.bus);
-    add_bench_commands(app_, line.bench_run, line.bench_identify);
+    line.bench = std::make_shared<BenchCommands>();
+    add_bench_commands(app_, *line.bench);
     add_pendant_commands(app_, line.bus);
     written_down();
     flags_take_no_value(app_);
@@ -155,6 +162,8 @@ class Commands {
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);
     for (std::string& word : line_.bus.sdo.words) unshield(word);
+    unshield(line_.bench->move.value);
+    unshield(line_.bench->jog.value);
     line_.run.clock = line_.up.clock = line_.test.clock = virtual_time_           ? ClockKind::virtual_time
                                                           : realtime_ == "strict" ? ClockKind::realtime
                                                           : realtime_.empty()
