@@ -19,9 +19,9 @@ using namespace servogate::gateway;
 const servogate::text::Entry kFailed{"cli.failed", "{0}", "{0}"};
 
 /// They only read, and nothing goes on when they end.
-constexpr std::array<std::string_view, 10> kNothingToStop = {"backup",   "restore", "version", "check",
-                                                             "canon",    "replay",  "plc run", "plc check",
-                                                             "plc test", "plc list"};
+constexpr std::array<std::string_view, 11> kNothingToStop = {"backup",    "capture",  "restore", "version",
+                                                             "check",     "canon",    "replay",  "plc run",
+                                                             "plc check", "plc test", "plc list"};
 
 int carry_out(const CommandLine& line) {
   if (std::find(kNothingToStop.begin(), kNothingToStop.end(), line.command) != kNothingToStop.end())
@@ -33,6 +33,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "backup") return command::backup(line.backup);
   if (line.command == "restore") return command::restore(line.backup);
   if (line.command == "replay") return command::replay(line.replay);
+  if (line.command == "capture") return command::capture(line.capture);
   if (line.command == "test") return command::test(line.test);
   if (line.command == "plc run") return command::plc_run(line.plc.run);
   if (line.command == "plc check") return command::plc_check(line.plc.check);
@@ -53,8 +54,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "modbus read") return command::modbus_read(line.bus.modbus_read);
   if (line.command == "modbus write") return command::modbus_write(line.bus.modbus_write);
   if (line.command == "modbus scan") return command::modbus_scan(line.bus.modbus_scan);
-  if (line.command == "bench run") return command::bench_run(line.bench_run);
-  if (line.command == "bench identify") return command::bench_identify(line.bench_identify);
+  if (line.command.starts_with("bench ")) return command::bench(line.command.substr(6), *line.bench);
   if (line.command == "pendant list") return command::pendant_list(line.bus.pendant_list);
   if (line.command == "pendant watch") return command::pendant_watch(line.bus.pendant_watch);
   if (line.command == "drive") return command::drive(line.bus.drive);

@@ -99,6 +99,7 @@ struct AxisConfig {
   double in_position_timeout = 2.0;        ///< s from the set-point's rest to an alarm, 0: none
   double jog_velocity = 0.0;               ///< mm/s, 0: a tenth of max_velocity
   double jog_velocity_not_homed = 0.0;     ///< mm/s, also off a hard limit; 0: a hundredth of max_velocity
+  double thread_retract = 0.0;             ///< mm, signed: how far it goes from a thread that is left
   std::string limit_plus;                  ///< input points, TRUE = on the limit
   std::string limit_minus;
   double hard_limit_plus = kNoLimit;  ///< machine coordinate at which the switch works
@@ -174,6 +175,7 @@ struct SpindleConfig {
   double gear_change_speed = 0.0;             ///< rpm of the spindle while its gear changes; 0: it stands
   double gear_change_time = 0.5;     ///< s from the outputs to an engaged gear that no input confirms
   double gear_change_timeout = 5.0;  ///< s to the confirmation of a gear, then an alarm
+  double encoder_delay = 0.0;        ///< s by which its counts are older than those of the drives
   Direction direction = Direction::plus;
   double at_speed_window = 5.0;    ///< per cent
   double at_speed_timeout = 10.0;  ///< s from the ramp's end to an alarm, 0: none
@@ -304,6 +306,9 @@ struct ControlConfig {
   double contour_tolerance = 0.01;          ///< mm
   ArcFeed arc_feed = ArcFeed::tool_centre;  ///< until a word of the program chooses
   double path_reserve = 1.0;                ///< per cent of the axes' limits, for holds and overrides
+  double thread_window = 0.2;               ///< mm of path off the spindle, further off a thread is left
+  bool thread_hold_retracts = false;        ///< a hold leaves a thread; false: the pass goes on to its end
+  std::string probe;                        ///< input point of the probe, TRUE = deflected
   int tool_places = 0;                      ///< of the magazine or turret; 0: T is not compared with it
   int processes = 1;
   int k_size = static_cast<int>(image::kPacketKDefaultSize);  ///< bytes of packet K

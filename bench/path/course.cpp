@@ -39,7 +39,6 @@ class Reader final : public path::RunSink, public path::KnotSink {
   static path::Pipeline::Settings settings(const path::Config& config) {
     path::Pipeline::Settings s;
     s.axes = config.axis_count;
-    s.rotary = config.rotary;
     return s;
   }
   void put(const path::Leg& leg) override { pipeline_.add(leg); }

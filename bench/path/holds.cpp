@@ -30,7 +30,6 @@ class OneRun final : public path::RunSink, public path::KnotSink, public path::C
   static path::Pipeline::Settings settings(const path::Config& config, double reserve) {
     path::Pipeline::Settings s;
     s.axes = config.axis_count;
-    s.rotary = config.rotary;
     s.reserve = reserve;
     return s;
   }

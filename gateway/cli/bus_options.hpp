@@ -101,18 +101,18 @@ struct ScanOptions : CanopenBusOptions {
   double seconds = 2.0;  ///< for heartbeats
 };
 
-/// `servogate sdo`: one object of one node.
+/// `servogate sdo`: objects of one node.
 struct SdoOptions : CanopenBusOptions {
   int node = 0;
   std::string action, object;
-  std::vector<std::string> words;  ///< VALUE and TYPE
+  std::vector<std::string> words;  ///< VALUE, TYPE, further accesses
   std::string eds, save;
 };
 
 /// `servogate od`: the whole object dictionary of a node.
 struct OdOptions : CanopenBusOptions {
   int node = 0;
-  std::string eds, save, compare, write_eds;
+  std::string eds, save, compare, restore, write_eds;
   std::string range;  ///< FIRST-LAST, hexadecimal; empty: the standard areas
 };
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "gateway/cli/bench_options.hpp"
 #include "gateway/cli/bus_options.hpp"
 #include "gateway/cli/plc_options.hpp"
 #include "gateway/cli/test_options.hpp"
+#include "gateway/control/run/capture/capture_request.hpp"
 #include "gateway/control/run/clock_kind.hpp"
 #include "gateway/control/run/exit_code.hpp"
 
@@ -17,6 +18,7 @@ struct RunOptions {
   std::string machine, program, dialect;
   ClockKind clock = ClockKind::unset;
   std::string trace, report, html, record, can_log, state, tables;
+  CaptureRequest capture;
   double override_percent = 100.0;
   std::optional<double> patience_s;  ///< machine time that a program may wait for somebody; 0: for ever
   std::vector<std::string> forces;   ///< NAME=VALUE
@@ -29,6 +31,7 @@ struct RunOptions {
 
 struct UpOptions {
   std::string machine, state, socket, record, can_log;
+  CaptureRequest capture;
   ClockKind clock = ClockKind::unset;
   double speed = 1.0;
   bool json = false;
@@ -74,11 +77,18 @@ struct ReplayOptions {
   bool json = false;
 };
 
+struct CaptureOptions {
+  std::string file, csv;
+  bool json = false;
+};
+
 /// `servogate backup` and `restore`.
 struct BackupOptions {
   std::string machine, file, state;
   bool force = false;
 };
+
+struct BenchCommands;
 
 /// The parsed command line: the name of the command and its options.
 struct CommandLine {
@@ -89,13 +99,14 @@ struct CommandLine {
   CheckOptions check;
   CanonOptions canon;
   ReplayOptions replay;
+  CaptureOptions capture;
   BackupOptions backup;
   TestOptions test;
   PlcCommands plc;
   BusCommands bus;
-  BenchOptions bench_run, bench_identify;
-  bool json = false;               ///< of `version`
-  std::vector<std::string> words;  ///< the whole line, for the report
+  std::shared_ptr<BenchCommands> bench;  ///< made by parse_command_line()
+  bool json = false;                     ///< of `version`
+  std::vector<std::string> words;        ///< the whole line, for the report
 };
 
 /// Reads the command line. nullopt: help or an error was printed, `exit_code` tells which.

@@ -16,6 +16,7 @@ int client(const ClientOptions& options);
 int check(const CheckOptions& options);
 int canon(const CanonOptions& options);
 int replay(const ReplayOptions& options);
+int capture(const CaptureOptions& options);
 int test(const TestOptions& options);
 int backup(const BackupOptions& options);
 int restore(const BackupOptions& options);
@@ -30,8 +31,8 @@ int nmt(const NmtOptions& options);
 int modbus_read(const ModbusOptions& options);
 int modbus_write(const ModbusOptions& options);
 int modbus_scan(const ModbusOptions& options);
-int bench_run(const BenchOptions& options);
-int bench_identify(const BenchOptions& options);
+/// `bench NAME`.
+int bench(const std::string& name, const BenchCommands& options);
 int pendant_list(const PendantOptions& options);
 int pendant_watch(const PendantOptions& options);
 int drive(const DriveOptions& options);

@@ -185,6 +185,11 @@ int Run::prepare() {
   if (machine_ == nullptr)
     return errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
   control_ = &machine_->control();
+  drivers::Notice why;
+  if (options_.capture.asked() && !machine_->capture(options_.capture, why)) {
+    complain(*why.entry, why.arguments);
+    return kWrongUse;
+  }
   const auto forces = force_settings(options_.forces);
   forces_ = std::make_unique<RunForces>(*control_);
   if (!forces || print_findings(forces_->plan(*forces)) > 0) return kWrongUse;
@@ -462,9 +467,10 @@ void Run::explain(const OperatorScript& script, const report::Report& report) {
   else if (report.blocks > 0)
     tell(say(kBroken, {blocks, std::to_string(estimate_blocks_), time}));
   std::string files;
-  for (const std::string* path :
-       {&options_.html, &options_.report, &options_.trace, &options_.record, &options_.can_log})
-    if (!path->empty()) files += (files.empty() ? "" : ", ") + *path;
+  for (const std::string* path : {&options_.html, &options_.report, &options_.trace, &options_.record,
+                                  &options_.can_log, &options_.capture.file})
+    if (!path->empty() && (path != &options_.capture.file || machine_->captured()))
+      files += (files.empty() ? "" : ", ") + *path;
   if (!files.empty() && !infrastructure_) tell(say(kWritten, {files}));
 }
 
@@ -493,7 +499,8 @@ int run(const RunOptions& given, const std::vector<std::string>& command_line) {
           check_outputs({{"--trace", options.trace},
                          {"--report", options.report},
                          {"--html", options.html},
-                         {"--record", options.record}},
+                         {"--record", options.record},
+                         {"--capture", options.capture.file}},
                         options.state, loaded,
                         {{text::both("the part program", "управляющую программу"), options.program}});
       code != kDone)

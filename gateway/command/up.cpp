@@ -62,8 +62,18 @@ std::unique_ptr<RunningMachine> compose(const UpOptions& options, const machine:
                                           .announce = to_standard_error()},
                                          findings);
   const int errors = print_findings(findings);
-  if (running == nullptr)
+  if (running == nullptr) {
     code = errors > 0 && !Control::infrastructure(findings) ? kWrongUse : kInfrastructure;
+    return nullptr;
+  }
+  drivers::Notice why;
+  if (options.capture.asked() && !running->capture(options.capture, why)) {
+    complain(*why.entry, why.arguments);
+    code = kWrongUse;
+    return nullptr;
+  }
+  if (const std::string folder = state_folder(options, loaded.machine, clock); !folder.empty())
+    running->keep_black_box(folder + "/blackbox");
   return running;
 }
 
@@ -137,7 +147,8 @@ int up(const UpOptions& options) {
   ClockKind clock = options.clock;
   if (!settle_clock(m, clock)) return kWrongUse;
   const std::string folder = state_folder(options, m, clock);
-  int code = check_outputs({{"--record", options.record}}, folder, loaded, {});
+  int code =
+      check_outputs({{"--record", options.record}, {"--capture", options.capture.file}}, folder, loaded, {});
   if (code == kDone) code = check_can_log(options.can_log, loaded);
   if (code != kDone) return code;
   std::unique_ptr<history::EventLog> history;  // the last to go

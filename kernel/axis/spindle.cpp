@@ -97,17 +97,38 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   drive_ = in;
   if (!in.online) {
     actual_rpm_ = 0.0;
-    marked_ = false;
+    marked_ = began_ = angle_known_ = false;
+    master_.valid = false;
     return;
   }
-  // Whole turns go out as integers: the angle stays exact however long the spindle runs.
-  const std::int64_t span = config_.counts_numerator;
-  const std::int64_t counts = (in.position_counts - scale_.reference_counts) % span;
-  const double turns = scale_.direction * static_cast<double>(counts) *
-                       static_cast<double>(config_.counts_denominator) / static_cast<double>(span);
-  angle_deg_ = 360.0 * (turns - std::floor(turns));
+  read_angle(in, image.now);
   shared.actual_rpm = actual_rpm_;
   shared.angle_deg = angle_deg_;
+}
+
+/// Whole turns are counted as integers: the angle stays exact however long the spindle runs.
+void Spindle::read_angle(const image::DriveFeedback& in, const image::CycleTime& now) noexcept {
+  constexpr std::int64_t kWithoutMark = 3;  // revolutions after which a drive is known to tell none
+  const std::int64_t span = config_.counts_numerator;
+  if (!began_) first_counts_ = in.position_counts;
+  began_ = true;
+  const std::int64_t gone = std::abs(in.position_counts - first_counts_) * config_.counts_denominator;
+  if (!angle_known_ && (marked_ || gone > kWithoutMark * span)) {
+    angle_known_ = true;
+    angle_zero_ = marked_ ? scale_.reference_counts : first_counts_;
+  }
+  const std::int64_t zero = angle_known_ ? angle_zero_ : scale_.reference_counts;
+  const std::int64_t counts = (in.position_counts - zero) * scale_.direction * config_.counts_denominator;
+  const std::int64_t whole = counts / span - (counts % span < 0 ? 1 : 0);
+  master_.turns = whole;
+  master_.part = static_cast<double>(counts - whole * span) / static_cast<double>(span);
+  master_.valid = config_.encoder && angle_known_;
+  const double own = static_cast<double>(((in.position_counts - scale_.reference_counts) % span) *
+                                         scale_.direction * config_.counts_denominator) /
+                     static_cast<double>(span);
+  angle_deg_ = 360.0 * (own - std::floor(own));
+  if (in.missed == 0)
+    master_.at_ns = now.t_ns - now.period_ns - static_cast<image::Nanoseconds>(config_.encoder_delay * 1e9);
 }
 
 void Spindle::watch_source(const image::ProcessImage& image) noexcept {

@@ -13,6 +13,14 @@ namespace servogate::axis {
 
 enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient };
 
+/// Where an encoder stands, as the master of a path.
+struct SpindleAngle {
+  bool valid = false;  ///< it is known: from the zero mark, or from switching on where the drive tells none
+  std::int64_t turns = 0;        ///< whole revolutions, + clockwise
+  double part = 0.0;             ///< of a revolution, 0 - 1
+  image::Nanoseconds at_ns = 0;  ///< machine time at which it stood there
+};
+
 /// A spindle: ramped speed command, at-speed and standstill, oriented stop. Its supplier is a CSV drive in
 /// SpindleImage (CiA 402, or an inverter on a line), or an inverter on outputs of packet A. In each cycle:
 /// read(image), react(reaction), command(image); all real-time safe.
@@ -56,6 +64,9 @@ class Spindle {
   bool zero_speed() const noexcept { return zero_speed_; }
   bool oriented() const noexcept { return oriented_; }
   double actual_rpm() const noexcept { return actual_rpm_; }
+  /// The same with its revolutions and its time, exact however long the spindle runs; a reading that did not
+  /// come keeps the time of the one before. real-time safe.
+  const SpindleAngle& angle() const noexcept { return master_; }
   /// Measured angle, 0-360 degrees, + clockwise; from the zero mark once it has been passed. real-time safe.
   double angle_deg() const noexcept { return angle_deg_; }
 
@@ -63,6 +74,7 @@ class Spindle {
   void follow_drive(double wanted, double dt) noexcept;
   void follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept;
   void write_drive(image::SpindleImage& out) const noexcept;
+  void read_angle(const image::DriveFeedback& in, const image::CycleTime& now) noexcept;
   void watch_source(const image::ProcessImage& image) noexcept;
   void give_up() noexcept;
   double ordered_speed() const noexcept;
@@ -97,6 +109,9 @@ class Spindle {
   double command_rpm_ = 0.0;
   double actual_rpm_ = 0.0;
   double angle_deg_ = 0.0;
+  SpindleAngle master_;
+  bool began_ = false, angle_known_ = false;  ///< master_ counts from angle_zero_, until the drive is gone
+  std::int64_t first_counts_ = 0, angle_zero_ = 0;
   bool orienting_ = false;  ///< slow enough, position loop closed
   double wait_s_ = 0.0;
   double off_s_ = 0.0;

@@ -17,6 +17,10 @@ enum class EventKind : std::uint8_t {
   dwell,
   write,
   wait,
+  spindle_mark,  ///< until spindle `number` passes its zero mark
+  tap,           ///< the spindle is turned `mode` at `value` rpm where the tap that follows asks for it
+  probe_arm,     ///< the motion that follows ends where the probe touches
+  probe_end,     ///< and did not touch
   message,
   process_start,    ///< process `number` gets another program; finding `code`: its start is refused
   process_release,  ///< the program is unloaded when it has ended

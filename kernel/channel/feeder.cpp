@@ -124,6 +124,9 @@ void Feeder::take_orders() {
       case FeederOrder::Kind::supply:
         if (order.generation == generation_) supplied_event_ = order.event;
         break;
+      case FeederOrder::Kind::probed:
+        if (order.generation == generation_ && state_ == State::probing) take_touch(order);
+        break;
       case FeederOrder::Kind::way:
         ways_.plan(order.way, elements_.path_position(order.position));
         break;
@@ -165,6 +168,8 @@ void Feeder::begin(const FeederOrder& order) {
   warned_ = 0;
   raised_.clear();
   wanted_.clear();
+  tap_.reset();
+  tap_back_.reset();
   supplied_event_ = 0;
 }
 
@@ -313,7 +318,10 @@ void Feeder::accept(const program::Command& command) {
   last_executed_ = executed();
   last_file_ = command.file;
   acted_in_block_ = (acted_in_block_ || acts(command)) && !stops(command);
+  if (take_tap(command)) return;
+  if (std::holds_alternative<program::Probe>(command.what)) return probe(command);
   if (is_motion(command)) {
+    if (std::holds_alternative<program::Thread>(command.what)) ways_.bar();
     move(command);
     return;
   }
@@ -321,8 +329,6 @@ void Feeder::accept(const program::Command& command) {
     return order_process(*process, command);
   if (const auto* windows = std::get_if<program::InPosition>(&command.what))
     return set_windows(*windows, command);
-  if (const std::optional<text::Finding> finding = not_driven(command))
-    return fail(placed(*finding, command));
   std::optional<ForCycle> order = for_cycle(command, elements_, texts_, view_);
   if (!order) return;
   if (order->at_once) {

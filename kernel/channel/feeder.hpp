@@ -36,13 +36,14 @@ struct FeederOrder {
     sync,     ///< the sync event has been reached; packets stand in Link::packets_of()
     run_on,   ///< no longer block by block
     supply,   ///< another process is at rest for the program of process_start `event`
+    probed,   ///< the motion of a probe has ended: it stands at `position` and touched at `touched`
     way,      ///< along the path from where the held program stands, at `position`
   };
   Kind kind = Kind::start;
   std::uint32_t generation = 0;  ///< of the run it speaks of
   bool manual_data = false;      ///< start: the typed block instead of the program
   bool block_by_block = false;   ///< start: STEP mode
-  program::Position position{};
+  program::Position position{}, touched{};
   std::uint32_t axes = 0;  ///< start: the machine axes that its programs move, as bits
   WayOrder way;
   std::uint32_t event = 0;  ///< supply: Event::id
@@ -114,7 +115,8 @@ class Feeder {
   void set_manual_block(std::string block) { manual_block_ = std::move(block); }
   /// A run is being read or about to be: load() has to wait. False once its last motion has been read.
   bool reads() const noexcept {
-    return state_ == State::feeding || state_ == State::syncing || orders_read_ < link_.orders.written();
+    return state_ == State::feeding || state_ == State::syncing || state_ == State::probing ||
+           orders_read_ < link_.orders.written();
   }
   bool loaded() const noexcept { return static_cast<bool>(factory_); }
   /// The machine has so many processes, and programs of others come from there. Before the first program.
@@ -141,7 +143,7 @@ class Feeder {
   const program::Interpreter* interpreter() const noexcept { return interpreter_ ? &*interpreter_ : nullptr; }
 
  private:
-  enum class State { idle, feeding, syncing, ended };
+  enum class State { idle, feeding, syncing, probing, ended };
 
   bool wants_more() const;
   void take_orders();
@@ -154,6 +156,10 @@ class Feeder {
   void warn_of_rest();
   void end();
   bool move(const program::Command& command);
+  bool take_tap(const program::Command& command);
+  void tap_back(const program::Command& command);
+  void probe(const program::Command& command);
+  void take_touch(const FeederOrder& order);
   void refuse_foreign(int axis, const program::Command& command);
   void set_windows(const program::InPosition& windows, const program::Command& command);
   void order_process(const program::ProcessOrder& order, const program::Command& command);
@@ -179,6 +185,9 @@ class Feeder {
     text::Finding missing;
   };
   std::vector<Wanted> wanted_;
+  /// The way in of a tap and what its spindle does then, until its way out is there.
+  std::optional<program::Command> tap_;
+  std::optional<program::Spindle> tap_back_;
   std::uint32_t supplied_event_ = 0;  ///< whose process is at rest now; 0: none
   InterpreterFactory factory_;
   RestartFactory once_;  ///< instead, for the next run

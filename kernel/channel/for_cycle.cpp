@@ -32,6 +32,7 @@ class Translation {
     order.event.flag = s.surface_speed;
     return order;
   }
+  Result operator()(const program::SpindleMark&) const { return ForCycle{EventKind::spindle_mark, {}}; }
   Result operator()(const program::Tool& t) const {
     if (t.activate) return std::nullopt;
     ForCycle order = coded(EventKind::tool, t.number);

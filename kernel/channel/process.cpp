@@ -34,6 +34,7 @@ Process::Process(const ProcessConfig& config)
       base_(image::process_base(config.index)),
       meeting_(config.meeting != nullptr ? *config.meeting : alone_) {
   feeder_.set_neighbours(meeting_.count(), config.supplier);
+  probing_.configure(config.probe);
 }
 
 Process::~Process() = default;
@@ -133,10 +134,13 @@ void Process::interpolate(cycle::ProcessContext& c) noexcept {
   apply_at_once(c);
   apply_reaction(c);
   apply_hold(c);
+  probing_.look(c.image, c.axes);
   const path::Sample sample = follower_.step(entries);
   if (running_) {
     show_motion(sample, c.image.processes[static_cast<std::size_t>(config_.index)]);
     if (!aside_) drive_axes(sample, c);
+    follow_master(sample, c);
+    watch_probe(sample, c);
     if (sample.feed > 0.0 && !sample.rapid)
       cutting_.add(row_ != 0 ? row_ : c.image.processes[static_cast<std::size_t>(config_.index)].tool,
                    seconds(c));
@@ -201,6 +205,7 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
       turns == nullptr
           ? -1.0
           : std::abs(c.image.spindles[static_cast<std::size_t>(turns->index())].command_rpm) / 60.0);
+  follower_.set_master(master(c));
 }
 
 void Process::drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept {

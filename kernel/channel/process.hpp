@@ -12,6 +12,7 @@
 #include "kernel/channel/motion/cutting_times.hpp"
 #include "kernel/channel/motion/way_back.hpp"
 #include "kernel/channel/neighbours.hpp"
+#include "kernel/channel/probing.hpp"
 #include "kernel/cycle/boundary/participants.hpp"
 #include "kernel/path/follower.hpp"
 
@@ -22,9 +23,10 @@ struct ProcessConfig {
   path::Config path;  ///< path axes, limits, period
   AxisMap axes;
   double handshake_timeout_s = 10.0;
-  double in_position_timeout_s = 5.0;  ///< of the wait at exact stops, beside the axis' own alarm
-  Meeting* meeting = nullptr;          ///< of all processes, outlives this one; nullptr: it is the only one
-  ProgramSupplier supplier;            ///< of programs for the others
+  double in_position_timeout_s = 5.0;      ///< of the wait at exact stops, beside the axis' own alarm
+  std::optional<axis::SwitchPlace> probe;  ///< TRUE while it is deflected
+  Meeting* meeting = nullptr;  ///< of all processes, outlives this one; nullptr: it is the only one
+  ProgramSupplier supplier;    ///< of programs for the others
 };
 
 /// One process: the feeder outside the cycle and the follower with its handshakes inside, joined by a Link.
@@ -73,6 +75,8 @@ class Process final : public cycle::ProcessInCycle {
   bool unloaded() const noexcept { return released_.load(std::memory_order_relaxed) != 0 && !loaded(); }
   bool wish(image::Request& request) noexcept override;
   void answered(const image::Answer& answer) noexcept override;
+  /// mm by which the last tap went beyond its depth; negative: it did not reach it. In the cycle's thread.
+  double tap_overshoot() const noexcept { return tap_overshoot_; }
   bool stopping() const noexcept override { return stopping_.load(std::memory_order_relaxed); }
 
  private:
@@ -110,6 +114,7 @@ class Process final : public cycle::ProcessInCycle {
     bool begun = false;        ///< the feeder has begun it
     bool forward = false;
     bool ends = false;    ///< it ends as soon as it is at rest
+    bool capped = false;  ///< no faster than its feed, whatever the override
     double behind = 0.0;  ///< path to where the program was held
     double feed = 0.0;
     path::Tag tag;  ///< where it stands
@@ -154,6 +159,14 @@ class Process final : public cycle::ProcessInCycle {
   void at_stop(cycle::ProcessContext& c) noexcept;
   void at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept;
   bool execute(const Event& event, cycle::ProcessContext& c) noexcept;
+  // process_masters.cpp
+  path::MasterReading master(const cycle::ProcessContext& c) const noexcept;
+  void follow_master(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
+  void raise_of_motion(image::AlarmNumber number, double value, double limit,
+                       cycle::ProcessContext& c) noexcept;
+  bool passes_mark(const Event& event, cycle::ProcessContext& c) noexcept;
+  bool arm_probe(const Event& event, cycle::ProcessContext& c) noexcept;
+  void watch_probe(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
   // process_neighbours.cpp
   bool start_other(const Event& event, cycle::ProcessContext& c) noexcept;
   bool meet(const Event& event) noexcept;
@@ -218,6 +231,11 @@ class Process final : public cycle::ProcessInCycle {
   std::size_t function_count_ = 0;
   std::uint8_t surface_spindle_ = 0;  ///< of this process, that turns by a cutting speed
   double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
+  Event tap_;  ///< what the spindle of the tap under way does at the depth
+  bool tap_turned_ = false, tap_halted_ = false, master_told_ = false;
+  double tap_overshoot_ = 0.0;
+  double mark_ = -1.0;  ///< part of a revolution in the last cycle of a wait for the mark
+  Probing probing_;
   double last_speed_ = -1.0;
   path::Tag shown_;               ///< of the motion that the status has shown
   double to_go_ = 0.0;            ///< path to the end of its element

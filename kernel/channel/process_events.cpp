@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "kernel/channel/alarms/master_alarms.hpp"
 #include "kernel/channel/motion/surface_speed.hpp"
 #include "kernel/channel/process.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
@@ -108,6 +109,17 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       stage_ = Stage::waiting;
       state_ = ProcessState::waiting;
       return holds(c.image.packets.number(e.place), e.compare, e.value);
+    case EventKind::spindle_mark:
+      return passes_mark(e, c);
+    case EventKind::tap:
+      tap_ = e;
+      return true;
+    case EventKind::probe_arm:
+      return arm_probe(e, c);
+    case EventKind::probe_end:
+      if (stage_ == Stage::entered) raise(alarm::kProbeMissed, e, 0.0, 0.0, c);
+      stage_ = Stage::waiting;
+      return false;
     case EventKind::message:
       c.image.processes[static_cast<std::size_t>(config_.index)].message = e.code;
       return true;

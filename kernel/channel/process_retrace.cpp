@@ -38,6 +38,7 @@ bool Process::go_along(bool forward, const image::Request& request, cycle::Proce
   order.way.distance = forward ? 0.0 : request.value;
   order.way.blocks = forward ? 0 : request.index;
   order.way.feed = request.velocity;
+  retrace_.capped = request.velocity > 0.0;
   link_.orders.push(order);
   back_.set_position(position);
   retrace_.moves = true;
@@ -60,7 +61,8 @@ void Process::hold_way(const cycle::ProcessContext& c) noexcept {
     back_.hold();
   else
     back_.resume();
-  back_.set_override(follower_.override_ratio());
+  const double ratio = follower_.override_ratio();
+  back_.set_override(retrace_.capped ? std::min(ratio, 1.0) : ratio);
   if (const axis::Spindle* turns = spindle(0, c); turns != nullptr)
     back_.set_spindle(std::abs(c.image.spindles[static_cast<std::size_t>(turns->index())].command_rpm) /
                       60.0);

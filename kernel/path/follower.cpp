@@ -30,7 +30,8 @@ Follower::Follower(const Config& config, Track& track)
       window_(track),
       motion_(config),
       course_(track),
-      rate_({config.axis_count, config.limits, config.transformation}) {}
+      rate_({config.axis_count, config.limits, config.transformation}),
+      master_(config) {}
 
 void Follower::set_override(double ratio) noexcept {
   const double r = ratio >= kSlowestShare ? std::min(ratio, config_.largest_override) : 0.0;
@@ -67,7 +68,7 @@ void Follower::skip_to(const Track::Begin& begin) noexcept {
   track_.pieces.free_below(begin.piece);
   track_.knots.free_below(begin.knot);
   track_.stops.free_below(begin.stop);
-  in_span_ = on_course_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
+  in_span_ = on_course_ = by_master_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
   dropping_ = true;
   begun_ = begin.piece;
   motion_.rest();
@@ -139,6 +140,10 @@ void Follower::start() noexcept {
   pass_markers();
   if (wait_stop_ || wait_event_ || dropping_ || wants_rest()) return;
   if (const Span* span = window_.span(0); span != nullptr && span->final) {
+    if (span->terms.feed.lock.kind != Lock::Kind::none) {
+      if (begin_by_master()) enter();
+      return;
+    }
     enter();
     motion_.begin(window_, wish());
   } else if (const Entry* course = window_.course(); course != nullptr) {
@@ -172,7 +177,7 @@ void Follower::arrive(const Piece& last, bool waits) noexcept {
   sample_.distance_to_go = last.rest;
   pass_marks(last.tag.marks, 0.0);
   wait_stop_ = waits;
-  in_span_ = on_course_ = false;
+  in_span_ = on_course_ = by_master_ = false;
   motion_.rest();
 }
 
@@ -188,7 +193,7 @@ void Follower::drop() noexcept {
     if (window_.course() != nullptr) drop_course(*window_.course());
     window_.pop();
   }
-  in_span_ = on_course_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
+  in_span_ = on_course_ = by_master_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
   dropping_ = true;
   motion_.rest();
 }
@@ -244,12 +249,8 @@ FollowerState Follower::report() const noexcept {
   return rest_asked() ? FollowerState::held : FollowerState::moving;
 }
 
-/// Speed over the linear axes, or the rotary ones where only they move.
 void Follower::show_feed(const Vector& velocity) noexcept {
-  double linear = 0.0, turning = 0.0;
-  for (int i = 0; i < config_.axis_count; ++i)
-    (config_.rotary[i] ? turning : linear) += velocity[i] * velocity[i];
-  sample_.feed = std::sqrt(linear > 1e-12 * turning ? linear : turning);
+  sample_.feed = norm(velocity, config_.axis_count);
 }
 
 void Follower::place_course_on_axes() noexcept {
@@ -265,11 +266,17 @@ void Follower::place_course_on_axes() noexcept {
 
 /// Where the motion is in its span, as the set-point of the axes.
 void Follower::place_span_on_axes() noexcept {
-  const int n = config_.axis_count;
   const MotionState& state = motion_.state();
   locate(state.s);
   const Piece& piece = track_.pieces[piece_];
-  const double s = std::clamp(state.s - piece.start, 0.0, piece.length), v = state.v;
+  place_on_axes(std::clamp(state.s - piece.start, 0.0, piece.length), state);
+}
+
+/// `s` along the piece in motion.
+void Follower::place_on_axes(double s, const MotionState& state) noexcept {
+  const int n = config_.axis_count;
+  const Piece& piece = track_.pieces[piece_];
+  const double v = state.v;
   PathPoint at = evaluate(piece, s, n);
   Vector along{};
   for (int i = 0; i < n; ++i) along[i] = at.d1[i] * v;
@@ -302,6 +309,8 @@ void Follower::show_piece(double s, double v) noexcept {
 Sample Follower::sample() noexcept {
   if (on_course_) {
     place_course_on_axes();
+  } else if (in_span_ && by_master_) {
+    place_master_on_axes();
   } else if (in_span_) {
     place_span_on_axes();
   } else {
@@ -311,6 +320,7 @@ Sample Follower::sample() noexcept {
   sample_.state = report();
   sample_.event = wait_event_ ? window_.front().event : 0;
   sample_.starved = starved_;
+  show_master();
   return sample_;
 }
 
@@ -322,6 +332,9 @@ Sample Follower::step(std::uint64_t visible) noexcept {
   if (stopping_ && at_rest()) drop();
   if (on_course_) {
     follow_course();
+    if (!in_span_) pass_markers();
+  } else if (in_span_ && by_master_) {
+    follow_master();
     if (!in_span_) pass_markers();
   } else if (in_span_) {
     const Wish wanted = wish();

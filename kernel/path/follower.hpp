@@ -2,8 +2,10 @@
 #pragma once
 #include <cstdint>
 
+#include "kernel/path/law/master_motion.hpp"
 #include "kernel/path/law/motion.hpp"
 #include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/retract.hpp"
 #include "kernel/path/track/window.hpp"
 
 namespace servogate::path {
@@ -19,10 +21,24 @@ enum class FollowerState : std::uint8_t {
   fault,  ///< the planner restarted elsewhere than the follower stands; set_position() or restart() clears it
 };
 
+/// A motion by the spindle's angle (Element::lock), while one is under way.
+struct ByMaster {
+  bool underway = false;                  ///< begun, or waiting for its angle
+  bool waits = false;                     ///< for its angle
+  bool leaving = false;                   ///< off its master: it slows down, and goes off the path
+  bool locked = false;                    ///< behind its lead-in, its angle is the master's
+  bool reverse = false;                   ///< a tap asks for the reversal of its spindle, from then on
+  bool halt = false;                      ///< a tap that is given up asks for its spindle to stop
+  MasterFault fault = MasterFault::none;  ///< why it is being left
+  double value = 0.0, limit = 0.0;        ///< of the fault, see MasterFault
+  double phase_error = 0.0;               ///< mm of path, MasterMotion::phase_error()
+  double overshoot = 0.0;                 ///< mm that a tap went beyond its depth
+};
+
 /// The set-point of one cycle, of the axes.
 struct Sample {
   Vector position{}, velocity{}, acceleration{};  ///< mm, mm/s, mm/s2 (degrees)
-  double feed = 0.0;                              ///< speed along the path, mm/s over the linear axes
+  double feed = 0.0;                              ///< speed of the vector over mm and degrees, per s
   double distance_to_go = 0.0;                    ///< path length to the end of the block in motion
   Vector target{};                                ///< end point of the block in motion
   Tag tag;                                        ///< block in motion (or the last one)
@@ -31,7 +47,8 @@ struct Sample {
   std::uint32_t event = 0;    ///< at_event: which
   std::uint32_t starved = 0;  ///< cycles so far in which planning was late
   std::uint32_t passed = 0;   ///< marks passed in this cycle (Planner::add_mark())
-  double passed_at = 0.0;     ///< where in the cycle the last of them was, 0 - 1 (its end)
+  ByMaster master;
+  double passed_at = 0.0;  ///< where in the cycle the last of them was, 0 - 1 (its end)
 };
 
 /// The motion inside the cycle: owns place, speed and acceleration along the path. All functions are
@@ -56,6 +73,9 @@ class Follower {
   /// rest while it is 0. Below 0, as at the beginning: no such spindle, they are driven as planned. Along a
   /// course it acts as an override does: on all of it, where limits bind too, and to 0.05 %.
   void set_spindle(double revolutions) noexcept;
+  /// The spindle as it is measured, in each cycle: elements with a lock are driven by it. One that leaves its
+  /// master, or is stopped, goes off its path by Threads::retract and ends as behind stop().
+  void set_master(const MasterReading& reading) noexcept;
   /// The path rests only because the spindle does.
   bool waits_for_spindle() const noexcept { return !rest_asked() && spindle_stands() && at_rest(); }
   /// Goes on behind the event that is being reported; ignored otherwise.
@@ -71,7 +91,10 @@ class Follower {
   /// path begun.
   bool set_position(const Vector& at) noexcept;
   /// True while neither speed nor acceleration is present.
-  bool at_rest() const noexcept { return on_course_ ? rate_.at_rest() : motion_.at_rest(); }
+  bool at_rest() const noexcept {
+    if (by_master_) return master_.at_rest() && !retract_.moving();
+    return on_course_ ? rate_.at_rest() : motion_.at_rest();
+  }
 
  private:
   void take_entries(std::uint64_t visible) noexcept;
@@ -97,7 +120,15 @@ class Follower {
   double course_share() const noexcept;
   double rate_wanted() noexcept;
   void locate(double s) noexcept;
+  // follower_master.cpp
+  bool begin_by_master() noexcept;
+  void follow_master() noexcept;
+  void leave_spans_behind() noexcept;
+  void move_off_path() noexcept;
+  void place_master_on_axes() noexcept;
+  void show_master() noexcept;
   void place_span_on_axes() noexcept;
+  void place_on_axes(double s, const MotionState& state) noexcept;
   void place_course_on_axes() noexcept;
   void show_feed(const Vector& velocity) noexcept;
   void show_piece(double s, double v) noexcept;
@@ -113,7 +144,14 @@ class Follower {
   std::uint64_t taken_ = 0;  ///< entries taken from the track
   Motion motion_;            ///< through spans
   CourseAhead course_;
-  RateMotion rate_;  ///< along a course
+  RateMotion rate_;      ///< along a course
+  MasterMotion master_;  ///< through spans, by the spindle's angle
+  MasterEstimate estimate_;
+  MasterReading reading_;
+  Retract retract_;
+  Vector along_{};          ///< the most that each axis moves for a path of 1, on that run
+  double run_begin_ = 0.0;  ///< of the first span in the run
+  bool by_master_ = false, off_path_ = false;
 
   bool in_span_ = false;     ///< the first entry is a span or a course that is being driven
   bool on_course_ = false;   ///< and it is a course

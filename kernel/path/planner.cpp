@@ -145,7 +145,7 @@ struct Planner::Impl final : ContourSink {
 };
 
 bool Planner::Impl::suits_course(const Element& e) const {
-  return config.law != Law::spans && e.kind != Element::Kind::rapid;
+  return config.law != Law::spans && e.kind != Element::Kind::rapid && e.lock.kind == Lock::Kind::none;
 }
 
 /// A course is driven by the spindle as a whole, or not at all: it rests between one feed and the other.
@@ -254,6 +254,8 @@ bool Planner::Impl::add(const Element& e) {
   flaw = shaped.flaw;
   if (flaw != Flaw::none) return false;
   const bool moves = shaped.piece.length > 0.0;
+  const bool locked = e.lock.kind != Lock::Kind::none;
+  if (moves && locked != (before.element.lock.kind != Lock::Kind::none)) finish();
   if (moves && run == Run::undecided && !same_feed(e)) decide();
   if (moves && rests_before(e, shaped.piece)) finish();
   if (run == Run::none) run = Run::undecided;

@@ -202,6 +202,12 @@ std::span<const Key> axis_keys() {
       key<&C::max_jerk>("max_jerk",
                         {.unit = Unit::axis_jerk, .min = kSlowest, .max = kHardest, .required = true},
                         "limit of jerk", "предел рывка"),
+      key<&C::thread_retract>(
+          "thread_retract", {.unit = Unit::axis_length, .min = -100, .max = 100},
+          "so far it goes, with its sign, when a thread is left: the spindle is lost, or the "
+          "motion is stopped",
+          "на столько, со своим знаком, она отходит при прерывании резьбы: потерян "
+          "шпиндель или движение остановлено"),
       key<&C::travel_min>(
           "travel_min", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest, .required = true},
           "lower software limit, machine coordinates; a rotary axis with both limits 0 is endless",
@@ -388,6 +394,11 @@ const Section& section_of<SpindleConfig>() {
       key<&C::counts_per_rev>("counts_per_rev", {.unit = Unit::counts, .min = 0, .max = kMostCounts},
                               "encoder counts per turn of the spindle; 0: no encoder",
                               "дискрет датчика на оборот шпинделя; 0: датчика нет"),
+      key<&C::encoder_delay>("encoder_delay", {.unit = Unit::second, .min = 0, .max = 0.2},
+                             "by so much its counts are older than those of drives latched at SYNC; threads "
+                             "and taps reckon with it",
+                             "на столько её отсчёты старше отсчётов приводов, защёлкнутых по SYNC; "
+                             "учитывается при нарезании резьбы"),
       key<&C::direction>("direction", {}, "minus: clockwise is falling counts",
                          "minus: по часовой стрелке счёт убывает"),
       key<&C::at_speed_window>("at_speed_window", {.unit = Unit::percent, .min = 0.1, .max = 50},

@@ -50,6 +50,20 @@ const Section& section_of<ControlConfig>() {
           "and takes a little longer",
           "доля пределов осей, которую движение по коротким кадрам оставляет на останов: чем она больше, тем "
           "быстрее останов и тем дольше обработка"),
+      key<&C::thread_window>(
+          "thread_window", {.unit = Unit::mm, .min = 0, .max = 10, .above_min = true},
+          "a thread or tap that is further off the measured angle of its spindle is left, alarm 4103",
+          "резьба, отошедшая от измеренного угла шпинделя дальше, прерывается, авария 4103"),
+      key<&C::thread_hold_retracts>(
+          "thread_hold_retracts", {},
+          "a hold leaves a thread by `thread_retract` of the axes; otherwise the pass goes on to its end",
+          "останов подачи прерывает резьбу с отводом осей по `thread_retract`; иначе проход завершается"),
+      key<&C::probe>(
+          "probe", {.refers = Refers::digital_input},
+          "input point of the probe, TRUE while it is deflected; with `edges` of the point a touch is "
+          "known to the time of its edge, without it to a cycle",
+          "вход щупа, TRUE, пока он отклонён; при `edges` точки касание известно с точностью "
+          "времени фронта, без него — с точностью такта"),
       key<&C::tool_places>("tool_places", {.min = 0, .max = 9999},
                            "places of the magazine or turret, T takes 0 to this number; 0: any T",
                            "мест в магазине или револьверной головке, T — от 0 до этого числа; 0: любой T"),

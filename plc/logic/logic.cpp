@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <set>
 
 #include "firmware_if/image/alarm_numbers.hpp"
@@ -312,6 +313,10 @@ void Logic::sort_retained(Plan& plan, Engine& engine) const {
 }
 
 void Logic::withdraw(std::uint32_t number) { delete ready_[number % kSlots].exchange(nullptr); }
+
+double Logic::number(const LogicProgram& program, const Handle& handle) const noexcept {
+  return running_ == &program ? program.engine.number(handle) : std::numeric_limits<double>::quiet_NaN();
+}
 
 void Logic::settle() {
   std::vector<std::unique_ptr<Prepared>> done;

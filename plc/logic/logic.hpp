@@ -78,6 +78,9 @@ class Logic final : public image::Logic {
   void set_aside(Retained value) { shown_->aside.push_back(std::move(value)); }
   /// The program that runs, as far as the outside knows it.
   std::shared_ptr<const LogicProgram> program() const;
+  /// Numeric value of a variable of `program`, NaN where another one runs meanwhile. Only the cycle's thread,
+  /// between two cycles or behind a scan. real-time safe.
+  double number(const LogicProgram& program, const Handle& handle) const noexcept;
   /// What stopped the program, with task, file and line, from a record of kPlcBudget or kPlcFault; empty when
   /// another program runs meanwhile. Not real-time safe.
   std::string fault_words(const image::AlarmRecord& record, text::Language language) const;

@@ -41,7 +41,7 @@ class SpindleRig {
     const double before = position;
     position += speed * 0.001;
     const auto revolution = 4096.0;
-    if (s.drive_command.latch_arm &&
+    if (marks && s.drive_command.latch_arm &&
         std::floor((before - mark) / revolution) != std::floor((position - mark) / revolution)) {
       s.drive.latch_counts = static_cast<std::int64_t>(
           mark + revolution * std::floor((std::max(before, position) - mark) / revolution));
@@ -53,7 +53,8 @@ class SpindleRig {
                     : on    ? image::DriveState::operation_enabled
                             : image::DriveState::switch_on_disabled;
     s.drive.error_code = fault ? 0x2310 : 0;
-    s.drive.position_counts = std::llround(position);
+    s.drive.missed = silent ? s.drive.missed + 1 : 0;
+    if (!silent) s.drive.position_counts = std::llround(position);
     spindle.read(image);
     spindle.react(reaction);
     spindle.command(image);
@@ -76,7 +77,8 @@ class SpindleRig {
   image::Reaction reaction = image::Reaction::none;
   std::vector<Event> events;
   double speed = 0.0, position = 0.0, mark = 777.0, steepest = 0.0, last_command = 0.0;
-  bool fault = false, blocked = false;
+  bool fault = false, blocked = false, silent = false;  ///< silent: its process data do not come
+  bool marks = true;                                    ///< the drive captures its zero mark
 };
 
 TEST(Spindle, ramps_to_its_speed_and_says_when_it_is_there) {
@@ -127,6 +129,43 @@ TEST(Spindle, takes_the_override_of_the_plc_and_the_limits_of_its_configuration)
   rig.set("override", 0);
   rig.spindle.order(SpindleMode::cw, 1.0);
   EXPECT_EQ(rig.spindle.ordered_rpm(), 100.0);
+}
+
+TEST(Spindle, counts_whole_revolutions_from_its_zero_mark_with_the_time_that_they_are_of) {
+  SpindleConfig c;
+  c.encoder_delay = 0.003;
+  SpindleRig rig(c);
+  EXPECT_FALSE(rig.spindle.angle().valid);
+  rig.spindle.order(SpindleMode::cw, 1500.0);
+  rig.run(3000);
+  SpindleAngle angle = rig.spindle.angle();
+  EXPECT_TRUE(angle.valid);
+  EXPECT_NEAR(static_cast<double>(angle.turns) + angle.part, (rig.position - rig.mark) / 4096.0,
+              0.5 / 4096.0);
+  EXPECT_EQ(angle.at_ns, rig.image.now.t_ns - rig.image.now.period_ns - 3'000'000);
+  rig.spindle.order(SpindleMode::ccw, 1500.0);
+  rig.run(6000);
+  angle = rig.spindle.angle();
+  EXPECT_LT(angle.turns, 0);
+  EXPECT_GE(angle.part, 0.0);
+  EXPECT_NEAR(static_cast<double>(angle.turns) + angle.part, (rig.position - rig.mark) / 4096.0,
+              0.5 / 4096.0);
+  rig.silent = true;
+  rig.cycle();
+  EXPECT_EQ(rig.spindle.angle().at_ns, angle.at_ns) << "what did not come is no news";
+}
+
+TEST(Spindle, of_a_drive_without_a_zero_mark_counts_from_where_it_was_switched_on) {
+  SpindleRig rig;
+  rig.marks = false;
+  rig.position = 100.0;
+  rig.spindle.order(SpindleMode::cw, 600.0);
+  rig.run(250);
+  EXPECT_FALSE(rig.spindle.angle().valid) << "it may still come";
+  rig.run(1000);
+  const SpindleAngle angle = rig.spindle.angle();
+  ASSERT_TRUE(angle.valid);
+  EXPECT_NEAR(static_cast<double>(angle.turns) + angle.part, (rig.position - 100.0) / 4096.0, 0.5 / 4096.0);
 }
 
 TEST(Spindle, does_not_turn_without_the_enable_of_the_plc) {

@@ -110,6 +110,43 @@ TEST(Guard, leaves_the_drive_without_torque_when_it_goes_out_of_scope_in_motion)
   EXPECT_LT(std::abs(drive.plant().velocity_rad_s()), 0.1);
 }
 
+TEST(Guard, a_cycle_that_comes_late_and_those_that_crowd_behind_it_are_no_runaway) {
+  // An even motion at the limit of the speed, seen by a computer that stands still for 20 ms and then catches
+  // up.
+  class Even final : public BenchDrive {
+   public:
+    double period_s() const noexcept override { return 1e-3; }
+    bool ended() const override { return false; }
+    bool cycle(const DriveAsk& ask, DriveAnswer& answer) override {
+      ++cycles_;
+      time_ += cycles_ == 500 ? 0.020 : cycles_ > 500 && cycles_ < 520 ? 0.00005 : 0.001;
+      answer.online = true;
+      answer.enabled = ask.power;
+      answer.time_s = time_;
+      answer.position_rad = 20.0 * time_;
+      return true;
+    }
+
+   private:
+    int cycles_ = 0;
+    double time_ = 0.0;
+  } drive;
+  Guard guard(drive, {-1.0, 1000.0, 20.0, 1.0, 5.0, 0.5});
+  ASSERT_TRUE(guard.enable(Loop::velocity));
+  for (int i = 0; i < 1000; ++i)
+    ASSERT_TRUE(guard.step(Loop::velocity, 20.0)) << i << ": " << guard.trip_value();
+}
+
+TEST(Guard, a_drive_that_leads_itself_to_a_target_may_take_its_time_and_not_leave_the_travel) {
+  Rig rig;
+  ASSERT_TRUE(rig.guard.enable(Loop::position));
+  EXPECT_TRUE(rig.guard.lead_to(0.4)) << "further than the following error, and at once";
+  EXPECT_FALSE(rig.guard.lead_to(10.5));
+  EXPECT_EQ(rig.guard.trip(), Trip::travel);
+  rig.guard.release();
+  EXPECT_FALSE(rig.drive.asked.power);
+}
+
 TEST(Guard, keeps_every_cycle_with_its_stage) {
   Rig rig;
   ASSERT_TRUE(rig.guard.enable(Loop::velocity));

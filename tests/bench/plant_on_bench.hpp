@@ -22,6 +22,8 @@ class PlantOnBench final : public BenchDrive {
     const double turn = static_cast<double>(config_.counts_per_rev);
     // SYNC: what was asked a cycle ago acts, what is now is latched.
     measured_.online = online;
+    measured_.time_s = clock_s;
+    clock_s += 1e-3;
     measured_.faulted = faulted;
     measured_.enabled = acting_.power && !faulted;
     measured_.position_rad =
@@ -52,6 +54,7 @@ class PlantOnBench final : public BenchDrive {
 
   bool ends = false, gone = false, online = true, faulted = false;
   DriveAsk asked;
+  double clock_s = 0.0;  ///< by which the answers are measured
 
  private:
   static constexpr image::Nanoseconds kServo = 250'000;

@@ -119,6 +119,36 @@ TEST_F(Workbench, sdo_tells_what_is_wrong_with_the_line_before_a_bus_is_opened) 
   EXPECT_EQ(tool("sdo $BUS 5 read 1000 --eds missing.eds").code, 2);
 }
 
+TEST_F(Workbench, sdo_finds_objects_by_name_and_says_their_state_in_words) {
+  drives("5");
+  EXPECT_EQ(tool("sdo $BUS 5 read statusword").out,
+            "6041h:00 Statusword = 592 (0250h): Switch on disabled\n");
+  EXPECT_EQ(facts("sdo $BUS 5 read 6502")["meaning"], "pp vl pv tq hm ip csp csv cst");
+  const Ended several = tool("sdo $BUS 5 read position");
+  EXPECT_EQ(several.code, 2);
+  EXPECT_TRUE(several.err_has("Position demand value")) << several.err;
+}
+
+TEST_F(Workbench, sdo_makes_several_accesses_behind_one_listening) {
+  drives("5");
+  const Ended both = tool("sdo $BUS 5 write 6083 4711 6084 0x10 read 6083 profile_deceleration 2100 str");
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_TRUE(both.out_has("6083h:00 Profile acceleration = 4711 (00001267h)\n")) << both.out;
+  EXPECT_TRUE(both.out_has("6084h:00 Profile deceleration = 16 (00000010h)\n")) << both.out;
+  const json rows = facts("sdo $BUS 5 read 6041 5FFF 6064", 1)["accesses"];
+  ASSERT_EQ(rows.size(), 3u) << "one that fails keeps no other from being read";
+  EXPECT_EQ(rows[1]["abort"], 0x0602'0000);
+  EXPECT_EQ(rows[2]["value"], 0);
+  const Ended refused = tool("sdo $BUS 5 write 6041 1 u16 6083 1");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_TRUE(refused.err_has("not done any more: 6083h:00")) << refused.err;
+  EXPECT_EQ(facts("sdo $BUS 5 read 6083")["value"], 4711);
+  EXPECT_EQ(tool("sdo $BUS 5 read 6083 write 6060 8").code, 2) << "the strictest of them counts";
+  EXPECT_EQ(tool("sdo $BUS 5 read").code, 2);
+  EXPECT_EQ(tool("sdo $BUS 5 read 6083 write").code, 2);
+  EXPECT_EQ(tool("sdo $BUS 5 read 6083 6084 --save both.bin").code, 2);
+}
+
 TEST_F(Workbench, sdo_takes_names_and_types_from_a_data_sheet) {
   drives("5");
   desk_.write("sheet.eds",
@@ -226,6 +256,36 @@ TEST_F(Workbench, od_saves_a_configuration_and_finds_what_was_changed_since) {
   EXPECT_EQ(tool("od $BUS 5 --compare b.dcf").code, 0);
   EXPECT_NE(desk_.text("b.dcf").find("NodeID=0x5"), std::string::npos);
   EXPECT_NE(desk_.text("b.dcf").find("LSS_SerialNumber=0x5"), std::string::npos);
+}
+
+TEST_F(Workbench, od_restores_what_was_changed_and_compares_before_and_after) {
+  drives("5");
+  ASSERT_EQ(tool("od $BUS 5 --save a.dcf").code, 0);
+  ASSERT_EQ(tool("sdo $BUS 5 write 6083 1234 1800:1 0xC0000185 1A00:0 0 1A00:1 0x606C0020 1A00:0 1").code, 0);
+  const Ended ended = tool("od $BUS 5 --restore a.dcf");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.out_has("6083h:00 Profile acceleration: the device has 1234")) << ended.out;
+  EXPECT_TRUE(ended.out_has("node 5 is as a.dcf has it")) << ended.out;
+  EXPECT_EQ(tool("od $BUS 5 --compare a.dcf").code, 0);
+  const json again = facts("od $BUS 5 --restore a.dcf");
+  EXPECT_EQ(again["written"], 0);
+  EXPECT_TRUE(again["before"].empty());
+}
+
+TEST_F(Workbench, od_restores_nothing_of_another_device) {
+  drives("5");
+  ASSERT_EQ(tool("od $BUS 5 --save a.dcf").code, 0);
+  std::string other = desk_.text("a.dcf");
+  const std::string product = "0x00010192";
+  const std::size_t at = other.find("ParameterValue=" + product);
+  ASSERT_NE(at, std::string::npos) << other.substr(0, 2000);
+  other.replace(at + 15, product.size(), "0x00010193");
+  desk_.write("b.dcf", other);
+  ASSERT_EQ(tool("sdo $BUS 5 write 6083 1234").code, 0);
+  const Ended ended = tool("od $BUS 5 --restore b.dcf");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.err_has("of another device")) << ended.err;
+  EXPECT_EQ(facts("sdo $BUS 5 read 6083")["value"], 1234);
 }
 
 TEST_F(Workbench, od_finds_no_difference_to_what_it_has_saved_whatever_the_type) {

@@ -189,6 +189,26 @@ TEST_F(Retrace, of_a_thousand_short_blocks_comes_to_where_they_began_and_back) {
   EXPECT_EQ(rig.violations(), "");
 }
 
+TEST_F(Retrace, is_no_faster_than_asked_for_whatever_override_and_spindle_are) {
+  Rig rig("N10 S1000 M3\nN20 G0 X5\nN30 G95 G1 X100 F0.2\nN40 M30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x() > 20.0; }));
+  hold(rig);
+  ASSERT_EQ(rig.ask(RequestKind::override_feed, 1.5), Refusal::none);
+  image::Request r;
+  r.kind = RequestKind::retrace;
+  r.value = 8.0;
+  r.velocity = 1.0;
+  const std::size_t begin = rig.path.size();
+  ASSERT_EQ(rig.ask(r), Refusal::none);
+  stand(rig);
+  double most = 0.0;
+  for (std::size_t n = begin + 1; n < rig.path.size(); ++n)
+    most = std::max(most, apart(rig.path[n], rig.path[n - 1]) * 1000.0);
+  EXPECT_NEAR(most, 1.0, 0.002);
+  EXPECT_NEAR(rig.status().retraced_mm, 8.0, 0.01);
+}
+
 TEST_F(Retrace, is_refused_while_a_program_runs_and_without_saying_how_far) {
   Rig rig(kShapes);
   EXPECT_EQ(ask(rig, 5.0), Refusal::program_does_not_run);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
 
@@ -54,7 +55,25 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
   s.online = true;
   s.state = spindle_.power ? image::DriveState::operation_enabled : image::DriveState::switch_on_disabled;
   s.velocity_counts_s = spindle_.power ? spindle_.velocity_counts_s : 0.0;
-  s.position_counts += static_cast<std::int64_t>(s.velocity_counts_s * image.now.period_s());
+  s.missed = spindle_silent ? s.missed + 1 : 0;
+  const double period = image.now.period_s(), was = turns;
+  slipped_ += std::clamp(slip - slipped_, -0.002, 0.002);  // 10 % in 50 ms: it has inertia
+  turns += s.velocity_counts_s / 4096.0 * (1.0 - slipped_) * period;
+  if (spindle_.latch_arm && s.latch_sequence == 0 && std::floor(turns) != std::floor(was)) {
+    s.latch_sequence = 1;
+    s.latch_counts = 0;
+  }
+  if (!spindle_silent) s.position_counts = static_cast<std::int64_t>(std::floor(turns * 4096.0));
+
+  if (!clearance) return;
+  std::array<double, kAxes> at{};
+  for (std::size_t i = 0; i < kAxes; ++i) at[i] = static_cast<double>(counts_[i]) / 100000.0;
+  const double clear = clearance(at), before = std::exchange(clear_before_, clear);
+  image.packets.set_bit(kProbePlace, clear <= 0.0);
+  if (!edges || clear > 0.0 || before <= 0.0) return;
+  const auto ago = static_cast<image::Nanoseconds>((2.0 - before / (before - clear)) *
+                                                   static_cast<double>(image.now.period_ns));
+  image.edges.add({kProbePlace, true, image.now.t_ns - ago});
 }
 
 void IdealDrives::send(image::ProcessImage& image) noexcept {
@@ -120,6 +139,9 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
 Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s, RigKind kind) {
   ProcessConfig config;
   config.path.axis_count = kAxes;
+  if (kind != RigKind::blind) config.probe = axis::SwitchPlace{kProbePlace, false};
+  config.path.threads.hold_retracts = kind == RigKind::retracting;
+  config.path.threads.retract = {2.0, 0.0, 0.0};
   if (kind == RigKind::lawless) config.path.reserve = -1.0;
   config.handshake_timeout_s = handshake_timeout_s;
   cycle::CycleParts parts;
@@ -154,6 +176,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   parts.logic = &logic;
   parts.processes = {process.get()};
   parts.spindles.emplace_back().max_rpm = kSpindleMax;
+  parts.spindles.back().encoder = kind != RigKind::blind;
   cycle = std::make_unique<cycle::Cycle>(std::move(parts));
   run(0.01);
   EXPECT_EQ(ask(RequestKind::power, 1.0), cycle::Refusal::none);

@@ -27,11 +27,21 @@ class IdealDrives final : public image::CycleDevice {
   void send(image::ProcessImage& image) noexcept override;
   std::array<bool, kAxes> fault{};  ///< falls out of Operation enabled
   std::array<bool, kAxes> stuck{};  ///< does not move any more, and says so
+  double slip = 0.0;            ///< share of its speed that the spindle loses under load, 0.2 % each cycle
+  bool spindle_silent = false;  ///< its readings do not come any more
+  double turns = 0.0;           ///< true revolutions of the spindle one period ago
+  /// Of the probe to the part, mm: it is deflected from 0 down. Without it there is no part.
+  std::function<double(const std::array<double, kAxes>&)> clearance;
+  void surface_at(double z) {
+    clearance = [z](const std::array<double, kAxes>& at) { return at[2] - z; };
+  }
+  bool edges = true;  ///< its input tells its edges with times
 
  private:
   std::array<std::array<std::int64_t, 2>, kAxes> pipe_{};
   std::array<image::DriveCommand, kAxes> commands_{};
   std::array<std::int64_t, kAxes> counts_{};
+  double clear_before_ = 0.0, slipped_ = 0.0;
   image::DriveCommand spindle_;
 };
 
@@ -72,7 +82,8 @@ class TestLogic final : public image::Logic {
 
 /// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B; or
 /// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
-enum class RigKind { mill, lathe, rotary, lawless };
+/// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
+enum class RigKind { mill, lathe, rotary, lawless, blind, retracting };
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.
@@ -122,6 +133,9 @@ class Rig {
   std::uint64_t next_id_ = 1;
   cycle::Refusal started_ = cycle::Refusal::none;
 };
+
+/// Where the probe of the rig is.
+inline constexpr image::Place kProbePlace{image::Packet::a, image::Format::bl, 40, 1};
 
 /// A place of packet K or A from its format and index.
 inline image::Place sk(std::uint32_t index, image::Format format = image::Format::bl) {

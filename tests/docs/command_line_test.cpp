@@ -77,7 +77,7 @@ bool names(const std::string& section, const std::string& command) {
   for (std::size_t at = section.find(command); at != std::string::npos; at = section.find(command, at + 1)) {
     const std::size_t end = at + command.size();
     const std::string before = section.substr(0, at);
-    if (before.ends_with("plc ") || before.ends_with("can ")) continue;
+    if (before.ends_with("plc ") || before.ends_with("can ") || before.ends_with("bench ")) continue;
     if ((at == 0 || !is_word(section[at - 1])) && (end == section.size() || !is_word(section[end])))
       return true;
   }

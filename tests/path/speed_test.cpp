@@ -28,7 +28,7 @@ struct Straight {
     controls[1] = controls[2] = controls[0];
     controls[static_cast<std::size_t>(intervals)] = controls[static_cast<std::size_t>(intervals) + 1] =
         controls.back();
-    bounds.assign(static_cast<std::size_t>(intervals) + 1, {HUGE_VAL, false, &limits});
+    bounds.assign(static_cast<std::size_t>(intervals) + 1, {HUGE_VAL, &limits});
     problem.axes = 1;
     problem.step = seconds / intervals;
     problem.controls = controls;

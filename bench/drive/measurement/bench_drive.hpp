@@ -23,6 +23,7 @@ struct DriveAnswer {
   bool online = false;   ///< its process data are fresh
   bool enabled = false;  ///< Operation enabled, in the loop that was asked for
   bool faulted = false;
+  double time_s = 0.0;        ///< when it was measured, by one clock: cycles may come late
   double position_rad = 0.0;  ///< from where it stood at its first answer
   double torque_nm = 0.0;
   std::uint16_t statusword = 0, error_code = 0;

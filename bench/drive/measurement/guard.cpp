@@ -10,6 +10,9 @@ namespace {
 constexpr double kEnableWait_s = 5.0, kStopWait_s = 5.0, kOffWait_s = 2.0;
 /// Torque is looked at as a mean over this time: a single value is mostly noise.
 constexpr double kTorqueMean_s = 0.02;
+/// Speed is looked at over at least this time by the clock of the answers: of two answers it is mostly the
+/// grain of the encoder, and cycles that come late or crowded would make a runaway of an even motion.
+constexpr double kSpeedMean_s = 0.005;
 /// Speeds below it count as rest, rad/s.
 constexpr double kRest = 0.05;
 constexpr int kOfflineCycles = 10;
@@ -71,30 +74,48 @@ bool Guard::exchange(const DriveAsk& ask) {
     speed_ = known_ ? (answer_.position_rad - before) / (cycles_since_online_ * period_) : 0.0;
     cycles_since_online_ = 0;
     known_ = true;
+    places_[place_count_++ % places_.size()] = {answer_.time_s, answer_.position_rad};
     mean_torque_ += std::min(1.0, period_ / kTorqueMean_s) * (answer_.torque_nm - mean_torque_);
   }
   samples_.push_back({time_, ask.loop, ask.value, answer_.position_rad, answer_.torque_nm, answer_.statusword,
                       static_cast<std::uint16_t>(stages_.size() - 1)});
-  const auto second = static_cast<std::size_t>(std::max(1.0, 1.0 / period_));
-  if (watch && samples_.size() % second == 0) watch(*this);
+  last_loop_ = ask.loop;
+  const auto every = static_cast<std::size_t>(std::max(1.0, watch_s / period_));
+  if (watch && samples_.size() % every == 0) watch(*this);
   return goes_on;
 }
 
-bool Guard::look_at_answer(Loop loop, double set_point) {
+double Guard::even_speed() const {
+  const std::size_t kept = std::min(place_count_, places_.size());
+  if (kept < 2) return 0.0;
+  const Place& now = places_[(place_count_ - 1) % places_.size()];
+  Place before = now;
+  for (std::size_t back = 1; back < kept && now.time_s - before.time_s < kSpeedMean_s; ++back)
+    before = places_[(place_count_ - 1 - back) % places_.size()];
+  const double time = now.time_s - before.time_s;
+  return time >= kSpeedMean_s ? (now.position_rad - before.position_rad) / time : 0.0;
+}
+
+bool Guard::look_at_answer() {
   offline_cycles_ = answer_.online ? 0 : offline_cycles_ + 1;
   if (answer_.faulted) return fail(Trip::fault, answer_.error_code);
   if (offline_cycles_ > kOfflineCycles) return fail(Trip::offline);
   if (!answer_.online) return true;
+  const double speed = even_speed();
   // Where it will be in two cycles: one is lost on the bus in each direction.
-  const double soon = answer_.position_rad + 2.0 * period_ * speed_;
+  const double soon = answer_.position_rad + 2.0 * period_ * speed;
   if (soon < envelope_.travel_min_rad) return fail(Trip::travel, soon, envelope_.travel_min_rad);
   if (soon > envelope_.travel_max_rad) return fail(Trip::travel, soon, envelope_.travel_max_rad);
-  if (std::abs(speed_) > kSpeedRoom * envelope_.speed_rad_s)
-    return fail(Trip::speed, speed_, envelope_.speed_rad_s);
+  if (std::abs(speed) > kSpeedRoom * envelope_.speed_rad_s)
+    return fail(Trip::speed, speed, envelope_.speed_rad_s);
   if (std::abs(mean_torque_) > kTorqueRoom * envelope_.torque_nm)
     return fail(Trip::torque, mean_torque_, envelope_.torque_nm);
+  return true;
+}
+
+bool Guard::look_at_following(Loop loop, double set_point) {
   const double error = set_point - answer_.position_rad;
-  if (loop == Loop::position && std::abs(error) > envelope_.following_rad)
+  if (loop == Loop::position && answer_.online && std::abs(error) > envelope_.following_rad)
     return fail(Trip::following, error, envelope_.following_rad);
   return true;
 }
@@ -110,26 +131,38 @@ bool Guard::enable(Loop loop) {
     if (answer_.enabled) {
       powered_ = true;
       last_position_asked_ = here;
-      return look_at_answer(loop, here);
+      return look_at_answer() && look_at_following(loop, here);
     }
   }
   return known_ ? fail(Trip::not_enabled, answer_.statusword) : fail(Trip::offline);
 }
 
-bool Guard::step(Loop loop, double set_point) {
+/// Whether one more cycle with power may be.
+bool Guard::ready() {
   if (trip_ != Trip::none) return false;
   if (!powered_) return fail(Trip::not_enabled, answer_.statusword);
-  if (!look_at_set_point(loop, set_point)) return false;
+  powered_s_ += period_;
+  if (powered_s_ > envelope_.time_s) return fail(Trip::time, powered_s_, envelope_.time_s);
+  return !drive_.ended() || fail(Trip::ended);
+}
+
+bool Guard::step(Loop loop, double set_point) {
+  if (!ready() || !look_at_set_point(loop, set_point)) return false;
   const double speed = (set_point - last_position_asked_) / period_;
   if (loop == Loop::position && std::abs(speed) > envelope_.speed_rad_s * (1.0 + 1e-9))
     return fail(Trip::speed, speed, envelope_.speed_rad_s);
-  powered_s_ += period_;
-  if (powered_s_ > envelope_.time_s) return fail(Trip::time, powered_s_, envelope_.time_s);
-  if (drive_.ended()) return fail(Trip::ended);
   if (!exchange({true, false, loop, set_point})) return fail(Trip::gone);
   last_position_asked_ = loop == Loop::position ? set_point : answer_.position_rad;
   last_speed_asked_ = loop == Loop::velocity ? set_point : 0.0;
-  return look_at_answer(loop, set_point);
+  return look_at_answer() && look_at_following(loop, set_point);
+}
+
+bool Guard::lead_to(double target) {
+  if (!ready() || !look_at_set_point(Loop::position, target)) return false;
+  if (!exchange({true, false, Loop::position, target})) return fail(Trip::gone);
+  last_position_asked_ = answer_.position_rad;
+  last_speed_asked_ = 0.0;
+  return look_at_answer();
 }
 
 bool Guard::run_at(double speed, double acceleration, double hold_s) {
@@ -147,15 +180,17 @@ bool Guard::release() {
   released_ = true;
   powered_ = false;
   stage("release");
+  // In the loop that it is in: a drive may have no other.
+  const auto rest = [this] { return last_loop_ == Loop::position ? answer_.position_rad : 0.0; };
   // The first cycles are for what is still on its way.
   int cycles = 0, resting = 0;
   for (double t = 0.0; t < kStopWait_s; t += period_) {
-    if (!exchange({true, true, Loop::velocity, 0.0})) break;
+    if (!exchange({true, true, last_loop_, rest()})) break;
     resting = std::abs(speed_) < kRest ? resting + 1 : 0;
     if (++cycles > 5 && (resting > 5 || !answer_.online || answer_.faulted)) break;
   }
   for (double t = 0.0; t < kOffWait_s; t += period_) {
-    if (!exchange({false, false, Loop::velocity, 0.0})) break;
+    if (!exchange({false, false, last_loop_, rest()})) break;
     if (t > 5 * period_ && !answer_.enabled && answer_.online) return true;
   }
   return answer_.online && !answer_.enabled;

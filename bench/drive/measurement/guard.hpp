@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -62,6 +63,8 @@ class Guard {
   bool enable(Loop loop);
   /// One cycle with this set-point. False: the run is over.
   bool step(Loop loop, double set_point);
+  /// One cycle of a motion to `target_rad` that the drive forms by itself (profile position).
+  bool lead_to(double target_rad);
   /// Changes the speed evenly, then holds it for `hold_s`.
   bool run_at(double speed_rad_s, double acceleration_rad_s2, double hold_s);
   /// Stops it and takes the torque. True: the drive has shown that it has none.
@@ -80,19 +83,30 @@ class Guard {
   void stage(std::string name);
   const std::vector<std::string>& stages() const noexcept { return stages_; }
   const std::vector<Sample>& samples() const noexcept { return samples_; }
-  /// Called once a second of the drive's time, and at every stage.
+  /// Called every `watch_s` of the drive's time, and at every stage.
   std::function<void(const Guard&)> watch;
+  double watch_s = 1.0;
 
  private:
+  bool ready();
   bool exchange(const DriveAsk& ask);
   bool fail(Trip trip, double value = 0.0, double limit = 0.0);
-  bool look_at_answer(Loop loop, double set_point);
+  bool look_at_answer();
+  bool look_at_following(Loop loop, double set_point);
   bool look_at_set_point(Loop loop, double set_point);
+  double even_speed() const;
 
   BenchDrive& drive_;
   Envelope envelope_;
   double period_;
   DriveAnswer answer_;
+  Loop last_loop_ = Loop::velocity;
+  /// The last answers, as a ring: time and position.
+  struct Place {
+    double time_s = 0.0, position_rad = 0.0;
+  };
+  std::array<Place, 64> places_{};
+  std::size_t place_count_ = 0;
   double speed_ = 0.0, mean_torque_ = 0.0, last_speed_asked_ = 0.0, last_position_asked_ = 0.0;
   double time_ = 0.0, powered_s_ = 0.0;
   bool known_ = false, powered_ = false, released_ = true;

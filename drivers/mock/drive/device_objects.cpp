@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "drivers/mock/drive/servo_loops.hpp"
 #include "firmware_if/canopen/305/lss_frame.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
@@ -36,12 +37,26 @@ canopen::NodeId node_of(const SimulatedDriveConfig& c) {
   return c.node_id == canopen::kUnconfiguredNode ? canopen::NodeId{0} : c.node_id;
 }
 
+std::vector<ObjectSpec> tuning_rows(const PlantConfig& c) {
+  using enum canopen::DataType;
+  constexpr auto kNo = canopen::Mappable::no;
+  constexpr auto kRw = canopen::Access::rw, kConstant = canopen::Access::constant;
+  const auto in = [](double value, double unit) { return std::llround(value / unit); };
+  return {{tuning_object::kVelocityLoop, 0, unsigned8, kConstant, kNo, 2},
+          {tuning_object::kVelocityLoop, 1, unsigned32, kRw, kNo, in(velocity_gain_of(c), 1e-6)},
+          {tuning_object::kVelocityLoop, 2, unsigned32, kRw, kNo, in(c.velocity_integral, 1e-3)},
+          {tuning_object::kPositionLoop, 0, unsigned8, kConstant, kNo, 1},
+          {tuning_object::kPositionLoop, 1, unsigned32, kRw, kNo, in(c.position_gain, 1e-3)}};
+}
+
 std::vector<ObjectSpec> own_rows(const SimulatedDriveConfig& c) {
   const canopen::DeviceIdentity identity{c.device_type, c.vendor_id,     c.product_code,
                                          c.revision,    c.serial_number, c.name};
   std::vector<ObjectSpec> rows = canopen::communication_objects(node_of(c), identity);
   const auto drive = canopen::drive_objects(ratings_of(c));
   rows.insert(rows.end(), drive.begin(), drive.end());
+  const auto tuning = tuning_rows(c.plant);
+  rows.insert(rows.end(), tuning.begin(), tuning.end());
   if (c.program_memory > 0) {
     const auto program = canopen::program_objects(c.program_identification);
     rows.insert(rows.end(), program.begin(), program.end());

@@ -2,11 +2,54 @@
 #include "drivers/mock/drive/drive_inside.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <span>
 
+#include "drivers/mock/drive/servo_loops.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 
 namespace servogate::mock {
+
+SimulatedDrive::Inside::Tuning::Tuning(const canopen::ObjectDictionary& dictionary, bool from_sheet)
+    : velocity_gain(dictionary.find(tuning_object::kVelocityLoop, 1)),
+      velocity_integral(dictionary.find(tuning_object::kVelocityLoop, 2)),
+      position_gain(dictionary.find(tuning_object::kPositionLoop, 1)) {
+  using Dictionary = canopen::ObjectDictionary;
+  if (from_sheet || velocity_gain == Dictionary::kNone || velocity_integral == Dictionary::kNone ||
+      position_gain == Dictionary::kNone) {
+    velocity_gain = Dictionary::kNone;
+    return;
+  }
+  own = {dictionary.value(velocity_gain), dictionary.value(velocity_integral),
+         dictionary.value(position_gain)};
+}
+
+// A loop that a master has tuned becomes the torque that it asks for.
+canopen::ServoCommand SimulatedDrive::Inside::by_own_gains(const canopen::ServoCommand& asked) noexcept {
+  using Loop = canopen::ServoCommand::Loop;
+  const bool closed = asked.loop == Loop::velocity || asked.loop == Loop::position;
+  if (!closed) tuning.integral = 0.0;
+  if (!closed || tuning.velocity_gain == canopen::ObjectDictionary::kNone) return asked;
+  const std::array<std::int64_t, 3> tuned{dictionary.value(tuning.velocity_gain),
+                                          dictionary.value(tuning.velocity_integral),
+                                          dictionary.value(tuning.position_gain)};
+  if (tuned == tuning.own) return asked;
+  const double step = static_cast<double>(config.servo_period_ns) * 1e-9;
+  const double gain = static_cast<double>(tuned[0]) * 1e-6;
+  const ServoGains gains{static_cast<double>(tuned[2]) * 1e-3, gain,
+                         gain * static_cast<double>(tuned[1]) * 1e-3 * step, total_inertia_of(config.plant),
+                         2.0 * std::numbers::pi / static_cast<double>(config.plant.counts_per_rev)};
+  const double permille = config.plant.rated_torque_nm / 1000.0, peak = config.plant.peak_torque_nm;
+  const double high = std::min(asked.torque_limit_positive * permille, peak);
+  const double low = -std::min(asked.torque_limit_negative * permille, peak);
+  canopen::ServoCommand out = asked;
+  out.loop = Loop::torque;
+  out.torque = servo_torque(gains, asked, asked.torque * permille,
+                            {static_cast<double>(plant.state().position), plant.velocity_rad_s()}, low, high,
+                            tuning.integral) /
+               permille;
+  return out;
+}
 
 void SimulatedDrive::Inside::power_on(Nanoseconds t) noexcept {
   now = t;
@@ -107,7 +150,7 @@ void SimulatedDrive::Inside::watch_heat() noexcept {
 
 void SimulatedDrive::Inside::servo_tick() noexcept {
   const std::int64_t before = plant.counts();
-  plant.step(command);
+  plant.step(by_own_gains(command));
   if (spoiled(fault::Kind::kill)) return;  // the mechanics alone
   if (config.plant.thermal_time_s > 0.0) watch_heat();
   read_inputs(before);

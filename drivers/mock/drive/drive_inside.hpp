@@ -30,6 +30,7 @@ struct SimulatedDrive::Inside {
   void show_product(std::int64_t code) noexcept;
   void advance_to(Nanoseconds t) noexcept;
   void servo_tick() noexcept;
+  canopen::ServoCommand by_own_gains(const canopen::ServoCommand& asked) noexcept;
   void watch_heat() noexcept;
   void read_inputs(std::int64_t before) noexcept;
   bool inside(const DriveSwitch& s) const noexcept {
@@ -61,6 +62,15 @@ struct SimulatedDrive::Inside {
   Plant plant;
   BusGate gate{slave};
   canopen::ServoCommand command;
+  /// The loops as a master has tuned them; as they came they are the plant's. A drive from a data sheet has
+  /// no such objects: what 60F9h and 60FBh mean there is its maker's.
+  struct Tuning {
+    Tuning(const canopen::ObjectDictionary& dictionary, bool from_sheet);
+    canopen::ObjectDictionary::Slot velocity_gain, velocity_integral, position_gain;
+    std::array<std::int64_t, 3> own{};  ///< as they came
+    double integral = 0.0;
+  };
+  Tuning tuning{dictionary, config.data_sheet != nullptr};
   canopen::DriveInputs inputs;
   std::array<bool, canopen::kDriveInputs> outside_level{};
   std::int64_t lost_encoder_position = 0;

@@ -6,10 +6,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "drivers/mock/drive/servo_loops.hpp"
+
 namespace servogate::mock {
 namespace {
 
-constexpr double kDefaultVelocityBandwidth = 600.0;  // rad/s
 /// A compliant coupling is integrated in steps of at most this angle of its resonance, rad.
 constexpr double kResonanceStep = 0.2;
 constexpr int kMostSubsteps = 64;
@@ -37,7 +38,7 @@ Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
   const bool spring = config.stiffness_nm_rad > 0.0 && config.load_inertia_kg_m2 > 0.0;
   if (config.backlash_rad > 0.0 && !spring)
     throw std::invalid_argument("backlash needs a load behind a coupling: load inertia and stiffness");
-  total_inertia_ = config.inertia_kg_m2 + std::max(0.0, config.load_inertia_kg_m2);
+  total_inertia_ = total_inertia_of(config);
   // A rigid coupling makes one mass of both.
   if (!spring) config_.inertia_kg_m2 = total_inertia_;
   const auto turn = static_cast<double>(config.counts_per_rev);
@@ -50,8 +51,7 @@ Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
   brake_step_ = h_over_j_ * config.brake_torque_nm * viscous_divisor_;
   permille_to_nm_ = config.rated_torque_nm / 1000.0;
   nm_to_permille_ = 1000.0 / config.rated_torque_nm;
-  velocity_gain_ =
-      config.velocity_gain > 0.0 ? config.velocity_gain : total_inertia_ * kDefaultVelocityBandwidth;
+  velocity_gain_ = velocity_gain_of(config);
   integral_step_ = velocity_gain_ * config.velocity_integral * h_;
   stop_min_counts_ = config.end_stop_min_rev * turn;
   stop_max_counts_ = config.end_stop_max_rev * turn;
@@ -168,16 +168,10 @@ double Plant::loop_torque(const canopen::ServoCommand& command) noexcept {
   if (command.loop == Loop::torque) {
     integral_ = 0.0;
   } else {
-    double velocity = command.velocity;
-    if (command.loop == Loop::position)
-      velocity += config_.position_gain * (command.position - static_cast<double>(state_.position));
-    const double error = velocity * rad_per_count_ - omega_;
-    torque += total_inertia_ * command.acceleration * rad_per_count_ + velocity_gain_ * error;
-    const double wanted = torque + integral_;
-    // The integral stands still while the torque is at its limit in that direction.
-    if (!(wanted > high && error > 0.0) && !(wanted < low && error < 0.0))
-      integral_ += integral_step_ * error;
-    torque += integral_;
+    const ServoGains gains{config_.position_gain, velocity_gain_, integral_step_, total_inertia_,
+                           rad_per_count_};
+    torque = servo_torque(gains, command, torque, {static_cast<double>(state_.position), omega_}, low, high,
+                          integral_);
   }
   state_.saturated = torque > high || torque < low;
   torque = std::clamp(torque, low, high);

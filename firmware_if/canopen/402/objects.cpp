@@ -106,6 +106,8 @@ constexpr ObjectInfo kObjects[] = {
     {kMaxDeceleration, "Max deceleration", 32, false},
     {kSupportedHomingMethods, "Supported homing methods", 0, false},
     {kFollowingErrorActual, "Following error actual value", 32, true},
+    {0x60F9, "Velocity control parameter set", 0, false},
+    {0x60FB, "Position control parameter set", 0, false},
     {kDigitalInputs, "Digital inputs", 32, false},
     {kDigitalOutputs, "Digital outputs", 0, false},
     {kTargetVelocity, "Target velocity", 32, true},

@@ -201,22 +201,30 @@ Eds saved_configuration(const std::vector<ReadObject>& objects, const Eds* eds, 
   return dcf;
 }
 
+std::vector<Parameter> parameters_of(const Eds& file, NodeId node) {
+  std::vector<Parameter> out;
+  each_entry(file, [&](std::uint16_t index, std::uint8_t subindex, const EdsEntry& e, bool) {
+    if (!is_parameter(index, e)) return;
+    if (auto wanted = bytes_of(e, node))
+      out.push_back({index, subindex, std::move(*wanted), type_numbered(e.data_type),
+                     eds_writable(e.access) && index != object::kDeviceType && index != object::kIdentity});
+  });
+  return out;
+}
+
 std::vector<Difference> differences(SdoAccess& access, NodeId node, const Eds& file, int& compared,
                                     const std::function<bool()>& over) {
   std::vector<Difference> out;
   compared = 0;
-  bool silent = false;
-  each_entry(file, [&](std::uint16_t index, std::uint8_t subindex, const EdsEntry& e, bool) {
-    if (silent || over() || !is_parameter(index, e)) return;
-    const auto wanted = bytes_of(e, node);
-    if (!wanted) return;
+  for (const Parameter& p : parameters_of(file, node)) {
+    if (over()) break;
     ++compared;
-    SdoOutcome outcome = access.read(node, index, subindex);
-    const ValueType* type = type_numbered(e.data_type);
-    if (outcome.ok() && equal(*wanted, outcome.data, *type)) return;
-    silent = !outcome.answered();
-    out.push_back({index, subindex, show_value(*wanted, type), std::move(outcome), type});
-  });
+    SdoOutcome outcome = access.read(node, p.index, p.subindex);
+    if (outcome.ok() && equal(p.wanted, outcome.data, *p.type)) continue;
+    const bool silent = !outcome.answered();
+    out.push_back({p.index, p.subindex, show_value(p.wanted, p.type), std::move(outcome), p.type});
+    if (silent) break;
+  }
   return out;
 }
 

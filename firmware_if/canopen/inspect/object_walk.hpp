@@ -40,6 +40,18 @@ std::vector<IndexRange> standard_areas();
 Eds saved_configuration(const std::vector<ReadObject>& objects, const Eds* eds, NodeId node,
                         std::uint32_t bit_rate, std::vector<std::string>& not_saved);
 
+/// A parameter with the value that a file has for it.
+struct Parameter {
+  std::uint16_t index = 0;
+  std::uint8_t subindex = 0;
+  std::vector<std::uint8_t> wanted;
+  const ValueType* type = nullptr;
+  bool writable = true;
+};
+/// The parameters of a file: what can be written or is constant, and the identity. Not among them: values
+/// that only live (ro), commands (controlword, set-points), history, save and load.
+std::vector<Parameter> parameters_of(const Eds& file, NodeId node);
+
 /// A parameter that is not as a file has it.
 struct Difference {
   std::uint16_t index = 0;
@@ -48,8 +60,7 @@ struct Difference {
   SdoOutcome outcome;  ///< what the device answered
   const ValueType* type = nullptr;
 };
-/// Compares the parameters of a file with the node: what can be written or is constant, and the identity. Not
-/// compared: values that only live (ro), commands (controlword, set-points), history, save and load.
+/// Compares the parameters of a file with the node.
 std::vector<Difference> differences(SdoAccess& access, NodeId node, const Eds& file, int& compared,
                                     const std::function<bool()>& over);
 

@@ -6,7 +6,7 @@
 
 namespace servogate::gateway {
 
-/// Adds `bench run` and `bench identify` to the command line, filling their options.
-void add_bench_commands(CLI::App& app, BenchOptions& run, BenchOptions& identify);
+/// Adds `bench` with its commands to the command line, filling their options.
+void add_bench_commands(CLI::App& app, BenchCommands& options);
 
 }  // namespace servogate::gateway

@@ -59,23 +59,24 @@ void add_scan(CLI::App& app, ScanOptions& o) {
 }
 
 void add_sdo(CLI::App& app, SdoOptions& o) {
-  CLI::App& c = *app.add_subcommand("sdo", "Reads or writes an object of a CANopen node.");
+  CLI::App& c = *app.add_subcommand("sdo", "Reads or writes objects of a CANopen node.");
   add_bus(c, o);
   add_node(c, o.node);
   c.add_option("ACTION", o.action, "read or write")->required()->check(one_of({"read", "write"}));
-  c.add_option("OBJECT", o.object, "INDEX[:SUB], hexadecimal: 6041, 1018:4")->required();
+  c.add_option("OBJECT", o.object, "INDEX[:SUB], hexadecimal, or a name: 6041, 1018:4, statusword")
+      ->required();
   c.add_option(
        "VALUE", o.words,
        "Of write: VALUE [TYPE], @FILE for the bytes of a file; of read: [TYPE]. Types: bool, u8 to u64, "
-       "i8 to i64, f32, f64, str, hex, domain")
-      ->expected(0, 2);
+       "i8 to i64, f32, f64, str, hex, domain. Further objects may follow, also behind another read or write")
+      ->expected(0, 1000);
   c.add_option("--eds", o.eds, "Data sheet (EDS or DCF) that knows names and types");
   c.add_option("--save", o.save, "read: writes the bytes to this file");
   add_timeout(c, o);
   add_no_block(c, o);
   add_may_move(c, o);
   add_anyway(c, o);
-  c.footer("Example: servogate sdo socketcan:can0 5 read 6041");
+  c.footer("Example: servogate sdo socketcan:can0 5 read statusword error_code");
 }
 
 void add_od(CLI::App& app, OdOptions& o) {
@@ -91,8 +92,11 @@ void add_od(CLI::App& app, OdOptions& o) {
   CLI::Option* write_eds =
       c.add_option("--write-eds", o.write_eds,
                    "Writes an EDS of the node to this file: its own (1021h), or from what was read");
-  range->excludes(compare);
-  write_eds->excludes(compare);
+  CLI::Option* restore = c.add_option(
+      "--restore", o.restore, "Writes the parameters of this DCF that differ, and compares before and after");
+  range->excludes(compare)->excludes(restore);
+  write_eds->excludes(compare)->excludes(restore);
+  restore->excludes(compare);
   add_timeout(c, o);
   add_no_block(c, o);
   add_anyway(c, o);

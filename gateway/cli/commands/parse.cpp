@@ -88,6 +88,9 @@ bool negative(std::string_view a) {
   return a == "-" || (a.size() > 1 && a[0] == '-' && (a[1] == '.' || (a[1] >= '0' && a[1] <= '9')));
 }
 
+/// `--travel` takes the word behind it, negative or not.
+bool option(std::string_view a) { return a.starts_with("--"); }
+
 void unshield(std::string& word) {
   if (word.starts_with(kShield)) word.erase(0, 1);
 }
@@ -95,8 +98,10 @@ void unshield(std::string& word) {
 /// The arguments as CLI11 wants them: last one first, without the program's name.
 std::vector<std::string> shielded(int argc, char** argv) {
   // Numbers of these may be negative, and are no options.
+  const bool bench = argc > 2 && std::string_view(argv[1]) == "bench" &&
+                     (std::string_view(argv[2]) == "move" || std::string_view(argv[2]) == "jog");
   const bool numbers =
-      argc > 1 && (std::string_view(argv[1]) == "sdo" ||
+      argc > 1 && (bench || std::string_view(argv[1]) == "sdo" ||
                    std::any_of(std::begin(kClients), std::end(kClients),
                                [&](const ClientCommand& c) { return c.name == std::string_view(argv[1]); }));
   std::vector<std::string> arguments;
@@ -106,7 +111,8 @@ std::vector<std::string> shielded(int argc, char** argv) {
     if (word == "--realtime")
       arguments.push_back(word + "=strict");
     else
-      arguments.push_back(numbers && negative(word) ? kShield + word : word);
+      arguments.push_back(numbers && negative(word) && !(bench && option(argv[i - 1])) ? kShield + word
+                                                                                       : word);
   }
   return arguments;
 }
@@ -129,6 +135,7 @@ class Commands {
     check();
     canon();
     replay();
+    capture();
     test();
     backup();
     restore();
@@ -136,7 +143,8 @@ class Commands {
     add_bus_commands(app_, line.bus);
     add_canopen_commands(app_, line.bus);
     add_modbus_commands(app_, line.bus);
-    add_bench_commands(app_, line.bench_run, line.bench_identify);
+    line.bench = std::make_shared<BenchCommands>();
+    add_bench_commands(app_, *line.bench);
     add_pendant_commands(app_, line.bus);
     written_down();
     flags_take_no_value(app_);
@@ -154,6 +162,8 @@ class Commands {
     line_.client.command = line_.command;
     for (std::string& argument : line_.client.arguments) unshield(argument);
     for (std::string& word : line_.bus.sdo.words) unshield(word);
+    unshield(line_.bench->move.value);
+    unshield(line_.bench->jog.value);
     line_.run.clock = line_.up.clock = line_.test.clock = virtual_time_           ? ClockKind::virtual_time
                                                           : realtime_ == "strict" ? ClockKind::realtime
                                                           : realtime_.empty()
@@ -202,6 +212,7 @@ class Commands {
     app.add_option("--report", o.report, "Writes the report to this JSON file");
     app.add_option("--html", o.html, "Writes the report to this HTML file");
     app.add_option("--record", o.record, "Records inputs and requests for `servogate replay`");
+    capture_options(app, o.capture);
     app.add_option("--can-log", o.can_log,
                    "Writes the frames of each simulated CAN bus to BUS.log in this folder")
         ->type_name("DIR");
@@ -244,6 +255,7 @@ class Commands {
     app.add_option("--state", o.state, "State directory instead of the machine file's");
     app.add_option("--socket", o.socket, "Control socket instead of the default");
     app.add_option("--record", o.record, "Records inputs, requests and programs for `servogate replay`");
+    capture_options(app, o.capture);
     app.add_option("--can-log", o.can_log,
                    "Writes the frames of each simulated CAN bus to BUS.log in this folder")
         ->type_name("DIR");
@@ -372,6 +384,32 @@ class Commands {
     tables(app, o.tables);
     process(app, o.process, "Process that runs the program, from 1; without it the first one");
     app.add_flag("--json", o.json, "As JSON, which it always is");
+  }
+
+  static void capture_options(CLI::App& app, CaptureRequest& o) {
+    app.add_option("--capture", o.file, "Writes chosen values of each cycle to this file, *.csv or *.mcap")
+        ->type_name("FILE");
+    app.add_option("--channels", o.channels,
+                   "What --capture holds: names and groups with commas between them")
+        ->type_name("NAMES");
+    app.add_option("--trigger", o.trigger,
+                   "When --capture begins, as \"X.error > 0.05\" or alarm; without it at once")
+        ->type_name("CONDITION");
+    app.add_option("--before", o.before_s, "Time before the trigger that is in the capture")
+        ->type_name("SECONDS")
+        ->check(number_within({0.0, 3600.0, "s"}));
+    app.add_option("--after", o.after_s, "Time behind the trigger that is in the capture")
+        ->type_name("SECONDS")
+        ->check(number_within({0.0, 3600.0, "s"}));
+  }
+
+  void capture() {
+    CaptureOptions& o = line_.capture;
+    CLI::App& app = command("capture", "Says what a capture (*.mcap) holds, and makes CSV of it.",
+                            "servogate capture alarm.mcap --csv alarm.csv");
+    app.add_option("FILE", o.file, "File written by --capture, or one of the black box")->required();
+    app.add_option("--csv", o.csv, "Writes its values to this CSV file, its frames to a file beside it");
+    app.add_flag("--json", o.json, "As JSON");
   }
 
   void replay() {

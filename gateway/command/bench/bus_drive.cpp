@@ -7,6 +7,7 @@
 
 #include "drivers/candump/candump_line.hpp"
 #include "drivers/clock.hpp"
+#include "firmware_if/canopen/306/value_text.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -18,17 +19,15 @@ namespace {
 namespace object = canopen::object;
 using canopen::MappingEntry;
 using canopen::OperationMode;
-using canopen::supported_bit;
 
 const text::Entry kNoScale{"bench.no-scale", "node {0} does not say its {1}: give it with {2}",
                            "узел {0} не сообщает {1}: задайте ключом {2}"};
 const text::Entry kNoBoot{"bench.no-boot", "node {0} did not come into operation within {1} s; {2}",
                           "узел {0} не начал работу за {1} с; {2}"};
-const text::Entry kNoLimit{"bench.no-limit", "the torque limit 6072h of node {0} cannot be set: {1}",
-                           "предел момента 6072h узла {0} не записывается: {1}"};
-const text::Entry kNotRestored{"bench.not-restored",
-                               "the torque limit 6072h of node {0} is still {1}, it was {2}",
-                               "предел момента 6072h узла {0} остался {1}, а был {2}"};
+const text::Entry kNotSet{"bench.not-set", "{0} of node {1} cannot be set: {2}",
+                          "{0} узла {1} не записывается: {2}"};
+const text::Entry kNotRestored{"bench.not-restored", "{0} of node {1} is not what it was before: {2}",
+                               "{0} узла {1} не возвращено к прежнему значению: {2}"};
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kBootSeconds = 15;
@@ -42,10 +41,21 @@ std::optional<std::int64_t> number(ToolBus& bus, int node, std::uint16_t index, 
   return value;
 }
 
-SdoOutcome write_word(ToolBus& bus, canopen::NodeId node, std::uint16_t index, std::int64_t value) {
-  const std::uint8_t bytes[] = {static_cast<std::uint8_t>(value & 0xFF),
-                                static_cast<std::uint8_t>(value >> 8 & 0xFF)};
-  return bus.write(node, index, 0, bytes);
+/// One unit of 60FFh and 6081h in counts/s.
+double velocity_unit(const BenchOptions& options, const DriveFacts& facts) {
+  const double rpm = facts.counts_per_rev / 60.0;
+  return options.velocity_unit == "rpm" ? rpm : options.velocity_unit == "0.1rpm" ? 0.1 * rpm : 1.0;
+}
+
+/// One unit of 6042h in counts/s: a turn a minute, times 604Bh, times 604Ch.
+double vl_unit(ToolBus& bus, const BenchOptions& options, const DriveFacts& facts) {
+  double unit = facts.counts_per_rev / 60.0;
+  for (const std::uint16_t factor : {object::kVlSetpointFactor, object::kVlDimensionFactor}) {
+    const auto over = number(bus, options.node, factor, 1), under = number(bus, options.node, factor, 2);
+    if (over && under && *over != 0 && *under != 0)
+      unit *= static_cast<double>(*over) / static_cast<double>(*under);
+  }
+  return unit;
 }
 
 DriveFacts read_facts(ToolBus& bus, const BenchOptions& options) {
@@ -79,21 +89,31 @@ canopen::PdoWanted pdo(std::initializer_list<MappingEntry> entries) {
 }
 MappingEntry entry(std::uint16_t index, std::uint8_t bits) { return {index, 0, bits}; }
 
-canopen::SegmentConfig segment_of(const BenchOptions& options, const DriveFacts& facts) {
+canopen::SegmentConfig segment_of(ToolBus& bus, const BenchOptions& options, const DriveUse& use,
+                                  const DriveFacts& facts, const ObjectRecorder& recorder) {
   canopen::NodeConfig node;
   node.node = static_cast<canopen::NodeId>(options.node);
   node.name = "bench";
   canopen::DriveProfile& p = node.profile;
-  p.counts_per_rev = std::llround(facts.counts_per_rev);
+  p.counts_per_rev = std::max<std::int64_t>(4, std::llround(facts.counts_per_rev));
+  p.velocity_unit_counts_s = velocity_unit(options, facts);
+  p.position_mode = use.position;
+  p.velocity_mode = use.velocity;
+  p.torque_mode = use.torque;
   p.rpdo[0] = pdo({entry(object::kControlword, 16), entry(object::kTargetTorque, 16),
                    entry(object::kModesOfOperation, 8)});
   p.rpdo[1] = pdo({entry(object::kTargetPosition, 32), entry(object::kTargetVelocity, 32)});
+  if (use.velocity == OperationMode::velocity) {
+    p.rpdo[2] = pdo({entry(object::kVlTargetVelocity, 16)});
+    p.vl_unit_counts_s = vl_unit(bus, options, facts);
+  }
   p.tpdo[0] = pdo(
       {entry(object::kStatusword, 16), entry(object::kPositionActual, 32), entry(object::kTorqueActual, 16)});
   p.tpdo[1] = pdo({entry(object::kModesOfOperationDisplay, 8), entry(object::kErrorCode, 16)});
-  p.modes = supported_bit(OperationMode::cyclic_sync_position) |
-            supported_bit(OperationMode::cyclic_sync_velocity) |
-            supported_bit(OperationMode::cyclic_sync_torque);
+  for (int i = 0; i < 2; ++i)
+    p.tpdo[static_cast<std::size_t>(ObjectRecorder::kFirstPdo + i)].mapping = recorder.mapping(i);
+  p.modes = use.modes;
+  p.check_modes = use.modes != 0;
   canopen::SegmentConfig config;
   config.name = "bench";
   config.cycle_ns = std::llround(options.cycle_us * 1e3);
@@ -106,7 +126,8 @@ canopen::SegmentConfig segment_of(const BenchOptions& options, const DriveFacts&
 /// Sees what passes and writes it down.
 class BusDrive::Tap final : public image::CanBus {
  public:
-  Tap(ToolBus& tool, const std::string& file) : tool_(tool), bus_(*tool.transport().bus) {
+  Tap(ToolBus& tool, ObjectRecorder& recorder, const std::string& file)
+      : tool_(tool), bus_(*tool.transport().bus), recorder_(recorder) {
     if (!file.empty()) log_.open(file);
   }
   bool send(const image::CanFrame& frame) noexcept override {
@@ -116,7 +137,10 @@ class BusDrive::Tap final : public image::CanBus {
   }
   bool receive(image::CanFrame& frame) noexcept override {
     const bool came = bus_.receive(frame);
-    if (came) write(frame);
+    if (came) {
+      recorder_.on_frame(frame);
+      write(frame);
+    }
     return came;
   }
   image::CanState state() const noexcept override { return bus_.state(); }
@@ -129,48 +153,70 @@ class BusDrive::Tap final : public image::CanBus {
   }
   ToolBus& tool_;
   image::CanBus& bus_;
+  ObjectRecorder& recorder_;
   std::ofstream log_;
 };
 
-BusDrive::BusDrive(ToolBus& bus, const BenchOptions& options, DriveFacts facts, const std::string& log)
+BusDrive::BusDrive(ToolBus& bus, const BenchOptions& options, const DriveUse& use, DriveFacts facts,
+                   const std::string& log)
     : bus_(bus),
       node_(static_cast<canopen::NodeId>(options.node)),
       period_ns_(std::llround(options.cycle_us * 1e3)),
+      use_(use),
       facts_(std::move(facts)),
-      tap_(std::make_unique<Tap>(bus, log)),
-      segment_(std::make_unique<canopen::Segment>(*tap_, segment_of(options, facts_))),
+      recorder_(node_, use.record),
+      tap_(std::make_unique<Tap>(bus, recorder_, log)),
+      segment_(std::make_unique<canopen::Segment>(*tap_, segment_of(bus, options, use, facts_, recorder_))),
       image_(std::make_unique<image::ProcessImage>()),
       start_ns_(bus.now()) {
   image_->axis_count = 1;
   image_->now.period_ns = period_ns_;
 }
 
-std::unique_ptr<BusDrive> BusDrive::open(ToolBus& bus, const BenchOptions& options, const std::string& log,
-                                         int& code) {
+std::string BusDrive::change(std::uint16_t index, std::int64_t value) {
+  const SdoOutcome before = bus_.read(node_, index, 0);
+  if (!before.ok() || before.data.size() > 4) return {};
+  std::vector<std::uint8_t> bytes(before.data.size());
+  canopen::store_le(static_cast<std::uint64_t>(value), bytes);
+  const SdoOutcome outcome = bus_.write(node_, index, 0, bytes);
+  if (!outcome.ok()) return outcome.why();
+  changed_.push_back({index, before.data});
+  return {};
+}
+
+std::unique_ptr<BusDrive> BusDrive::open(ToolBus& bus, const BenchOptions& options, const DriveUse& use,
+                                         const std::string& log, int& code) {
   DriveFacts facts = read_facts(bus, options);
   const std::string node = std::to_string(options.node);
   code = kAlarm;
-  if (!(facts.counts_per_rev >= 4.0)) {
+  if (use.moves && !(facts.counts_per_rev >= 4.0)) {
     complain(kNoScale, {node, "608Fh", "--counts"});
     return nullptr;
   }
-  if (!(facts.rated_torque_nm > 0.0)) {
+  if (use.moves && !(facts.rated_torque_nm > 0.0)) {
     complain(kNoScale, {node, "6076h", "--rated-torque"});
     return nullptr;
   }
-  const auto before = number(bus, options.node, object::kMaxTorque);
-  const std::int64_t limit = std::min<std::int64_t>(
-      std::llround(options.torque_nm / facts.rated_torque_nm * 1000.0), before.value_or(65535));
-  if (before) {
-    const SdoOutcome outcome =
-        write_word(bus, static_cast<canopen::NodeId>(options.node), object::kMaxTorque, limit);
-    if (!outcome.ok()) {
-      complain(kNoLimit, {node, outcome.why()});
+  std::unique_ptr<BusDrive> drive(new BusDrive(bus, options, use, std::move(facts), log));
+  const DriveFacts& f = drive->facts_;
+  std::vector<std::pair<std::uint16_t, double>> wanted;
+  if (use.moves) {
+    const std::int64_t most = number(bus, options.node, object::kMaxTorque).value_or(65535);
+    wanted.emplace_back(object::kMaxTorque,
+                        std::min(options.torque_nm / f.rated_torque_nm * 1000.0, static_cast<double>(most)));
+  }
+  if (use.profile_speed_rev_s > 0.0)
+    wanted.emplace_back(object::kProfileVelocity,
+                        use.profile_speed_rev_s * f.counts_per_rev / velocity_unit(options, f));
+  if (use.profile_acceleration > 0.0)
+    for (const std::uint16_t index : {object::kProfileAcceleration, object::kProfileDeceleration})
+      wanted.emplace_back(index, use.profile_acceleration * f.counts_per_rev / velocity_unit(options, f));
+  for (const auto& [index, value] : wanted)
+    if (const std::string why = drive->change(index, std::llround(value)); !why.empty()) {
+      complain(kNotSet, {canopen::address_text(index, 0), node, why});
       return nullptr;
     }
-  }
-  std::unique_ptr<BusDrive> drive(new BusDrive(bus, options, std::move(facts), log));
-  drive->torque_limit_before_ = before;
+  drive->start_ns_ = bus.now();
   if (drive->boot()) return drive;
   complain(kNoBoot, {node, std::to_string(kBootSeconds), drive->said_});
   return nullptr;
@@ -182,9 +228,11 @@ BusDrive::~BusDrive() {
     image_->now.t_ns += period_ns_;
     if (!bus_.wait_until(start_ns_ + image_->now.t_ns)) return;
   }
-  if (!torque_limit_before_) return;
-  if (!write_word(bus_, node_, object::kMaxTorque, *torque_limit_before_).ok())
-    complain(kNotRestored, {std::to_string(node_), "?", std::to_string(*torque_limit_before_)});
+  for (auto c = changed_.rbegin(); c != changed_.rend(); ++c) {
+    const SdoOutcome outcome = bus_.write(node_, c->index, 0, c->before);
+    if (!outcome.ok())
+      complain(kNotRestored, {canopen::address_text(c->index, 0), std::to_string(node_), outcome.why()});
+  }
 }
 
 bool BusDrive::boot() {
@@ -202,8 +250,11 @@ bool BusDrive::cycle(const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
   const image::Nanoseconds due = start_ns_ + image_->now.t_ns;
   if (!bus_.wait_until(due)) return false;
   if (bus_.now() - due > period_ns_ / 2) ++late_;
+  answer.time_s = static_cast<double>(opened_ns_) * 1e-9;  // what comes now was latched by the SYNC before
+  opened_ns_ = bus_.now() - start_ns_;
   segment_->open_cycle(*image_);
   segment_->receive(*image_);
+  recorder_.end_cycle();
   canopen::BusEvent event;
   while (segment_->events().pop(event))
     said_ = canopen::describe(event, "bench", nullptr, text::user_language());

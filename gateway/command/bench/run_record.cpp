@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/bench/run_record.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/bench/run_page.hpp"
@@ -46,6 +49,35 @@ std::string hex(double value) {
   return out;
 }
 
+/// Names of the recorded objects as columns.
+std::string heads(const ObjectRecorder& recorder) {
+  std::string out;
+  for (const RecordedObject& o : recorder.objects()) out += ",\"" + o.name + "\"";
+  return out;
+}
+
+std::string cells(const ObjectRecorder& recorder, std::size_t row) {
+  std::string out;
+  for (const double value : recorder.row(row)) {
+    char cell[32];
+    std::snprintf(cell, sizeof cell, ",%.15g", value);
+    out += cell;
+  }
+  return out;
+}
+
+bool write_files(const std::string& path, const std::vector<std::pair<std::string, std::string>>& files,
+                 const nlohmann::json& meta) {
+  auto all = files;
+  all.emplace_back("meta.json", meta.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  for (const auto& [name, content] : all)
+    if (const std::string why = report::write_file(path + "/" + name, content); !why.empty()) {
+      complain(kCannotWrite, {path + "/" + name, why});
+      return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 bool make_run_directory(const std::string& path) {
@@ -59,26 +91,34 @@ bool make_run_directory(const std::string& path) {
   return false;
 }
 
-bool write_run(const std::string& path, const bench::Guard& guard, const nlohmann::json& meta) {
-  std::string csv = "time_s,stage,loop,set_point,position_rev,torque_nm,statusword\n";
-  for (const bench::Sample& s : guard.samples()) {
+bool write_run(const std::string& path, const bench::Guard& guard, const ObjectRecorder& recorder,
+               const nlohmann::json& meta) {
+  std::string csv = "time_s,stage,loop,set_point,position_rev,torque_nm,statusword" + heads(recorder) + "\n";
+  // The recorder has the cycles before the guard, too.
+  const std::size_t before = recorder.rows() - std::min(recorder.rows(), guard.samples().size());
+  for (std::size_t n = 0; n < guard.samples().size(); ++n) {
+    const bench::Sample& s = guard.samples()[n];
     const double unit = s.loop == bench::Loop::torque ? 1.0 : kTurn;
     char line[160];
-    std::snprintf(line, sizeof line, "%.6f,%s,%s,%.9g,%.9g,%.6g,0x%04X\n", s.time_s,
+    std::snprintf(line, sizeof line, "%.6f,%s,%s,%.9g,%.9g,%.6g,0x%04X", s.time_s,
                   guard.stages()[s.stage].c_str(), kLoops[static_cast<int>(s.loop)], s.set_point / unit,
                   s.position_rad / kTurn, s.torque_nm, s.statusword);
     csv += line;
+    if (recorder.rows() > 0) csv += cells(recorder, before + n);
+    csv += '\n';
   }
-  const std::pair<std::string, std::string> files[] = {
-      {path + "/samples.csv", csv},
-      {path + "/meta.json", meta.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"},
-      {path + "/report.html", run_page(guard, meta)}};
-  for (const auto& [file, content] : files)
-    if (const std::string why = report::write_file(file, content); !why.empty()) {
-      complain(kCannotWrite, {file, why});
-      return false;
-    }
-  return true;
+  return write_files(path, {{"samples.csv", csv}, {"report.html", run_page(guard, meta)}}, meta);
+}
+
+bool write_objects(const std::string& path, const ObjectRecorder& recorder, std::size_t first, double period,
+                   const nlohmann::json& meta) {
+  std::string csv = "time_s" + heads(recorder) + "\n";
+  for (std::size_t n = first; n < recorder.rows(); ++n) {
+    char time[32];
+    std::snprintf(time, sizeof time, "%.6f", static_cast<double>(n - first) * period);
+    csv += time + cells(recorder, n) + "\n";
+  }
+  return write_files(path, {{"samples.csv", csv}}, meta);
 }
 
 const char* trip_name(bench::Trip trip) noexcept {

@@ -9,6 +9,7 @@
 
 #include "firmware_if/canopen/inspect/object_catalogue.hpp"
 #include "firmware_if/canopen/inspect/object_walk.hpp"
+#include "firmware_if/canopen/inspect/value_meaning.hpp"
 #include "firmware_if/text/system_words.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
@@ -17,6 +18,7 @@
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/canopen/data_sheet.hpp"
 #include "gateway/command/canopen/object_value.hpp"
+#include "gateway/command/canopen/od_parameters.hpp"
 #include "gateway/command/canopen/sheet_file.hpp"
 #include "gateway/command/commands.hpp"
 #include "machine/files/output_files.hpp"
@@ -25,8 +27,6 @@ namespace servogate::gateway::command {
 
 namespace {
 
-using canopen::address_text;
-using canopen::Difference;
 using canopen::guess_type;
 using canopen::hex_text;
 using canopen::IndexRange;
@@ -43,9 +43,6 @@ const text::Entry kSilent{"od.silent", "node {0} does not answer{1}", "узел 
 const text::Entry kSaved{"od.saved", "{0}: {1} values of node {2}", "{0}: значений узла {2} — {1}"};
 const text::Entry kNotSaved{"od.not-saved", "{0}: not saved, a DCF cannot hold their values: {1}",
                             "{0}: не сохранены, их значения нельзя записать в DCF: {1}"};
-const text::Entry kOtherNode{
-    "od.other-node", "{0} is the configuration of node {1}; its COB-IDs are taken for those of node {2}",
-    "{0} — настройка узла {1}; её COB-ID приняты для узла {2}"};
 const text::Entry kOwnSheet{"od.own-sheet", "{0}: the EDS that node {1} itself stores in 1021h, {2} bytes",
                             "{0}: EDS, который узел {1} сам хранит в 1021h, байтов: {2}"};
 const text::Entry kOwnFormat{
@@ -56,50 +53,19 @@ const text::Entry kOwnBroken{"od.own-broken", "what node {0} stores in 1021h is 
                              "то, что узел {0} хранит в 1021h, — не EDS; не используется"};
 const text::Entry kOwnUnread{"od.own-unread", "the EDS that node {0} stores in 1021h cannot be read: {1}",
                              "EDS, который узел {0} хранит в 1021h, не читается: {1}"};
-const text::Entry kEqual{"od.equal", "node {0} is as {1} has it: {2} parameters compared",
-                         "узел {0} соответствует {1}: сравнено параметров: {2}"};
-const text::Entry kDiffers{"od.differs", "{0}: the device has {1}, the file {2}",
-                           "{0}: в устройстве {1}, в файле {2}"};
-const text::Entry kMany{"od.differences", "{0} of {1} parameters differ from {2}",
-                        "параметров, отличных от {2}: {0} из {1}"};
 
-/// What the command works on.
-struct Work {
-  const OdOptions& options;
-  SdoAccess& access;
-  std::function<bool()> over;
-  std::uint32_t bit_rate;
-  canopen::NodeId node() const { return static_cast<canopen::NodeId>(options.node); }
-};
-
-std::string say(const text::Entry& entry, const std::vector<std::string>& arguments) {
-  return text::render(entry, arguments, text::user_language());
-}
-
-/// "1018h:04 Identity object".
-std::string place_words(const ObjectCatalogue& catalogue, std::uint16_t index, std::uint8_t subindex) {
-  const std::string name = catalogue.name(index, subindex);
-  return address_text(index, subindex) + (name.empty() ? "" : " " + name);
-}
-
-json place_json(const ObjectCatalogue& catalogue, std::uint16_t index, std::uint8_t subindex) {
-  char digits[8];
-  std::snprintf(digits, sizeof digits, "%04X", index);
-  return {{"index", digits}, {"subindex", subindex}, {"name", catalogue.name(index, subindex)}};
-}
-
-json head(const OdOptions& options) { return {{"schema", 1}, {"node", options.node}}; }
-void print_json(const json& out) { print_exact(out.dump(1, ' ', false, json::error_handler_t::replace)); }
-
-void print_objects(const Work& work, const ObjectCatalogue& catalogue,
+void print_objects(const OdWork& work, const ObjectCatalogue& catalogue,
                    const std::vector<ReadObject>& objects) {
   json list = json::array();
   for (const ReadObject& o : objects) {
     const ValueType* type = catalogue.type(o.index, o.subindex);
     if (type == nullptr && o.outcome.ok()) type = guess_type(o.outcome.data);
     const std::string value = o.outcome.ok() ? show_value(o.outcome.data, type) : o.outcome.why();
+    const std::string meaning =
+        canopen::meaning_of(o.index, o.subindex, o.outcome.data, text::user_language());
     if (!work.options.json) {
-      print_line(place_words(catalogue, o.index, o.subindex) + (o.outcome.ok() ? " = " : ": ") + value);
+      print_line(place_words(catalogue, o.index, o.subindex) + (o.outcome.ok() ? " = " : ": ") + value +
+                 (meaning.empty() ? "" : ": " + meaning));
       continue;
     }
     json row = place_json(catalogue, o.index, o.subindex);
@@ -107,6 +73,7 @@ void print_objects(const Work& work, const ObjectCatalogue& catalogue,
       row["type"] = type->name;
       row["value"] = json_value(o.outcome.data, type);
       row["bytes"] = hex_text(o.outcome.data);
+      if (!meaning.empty()) row["meaning"] = meaning;
     } else {
       row["error"] = value;
       row["abort"] = static_cast<std::uint32_t>(o.outcome.abort);
@@ -119,7 +86,7 @@ void print_objects(const Work& work, const ObjectCatalogue& catalogue,
   print_json(out);
 }
 
-int save(const Work& work, const std::vector<ReadObject>& objects, const canopen::Eds* eds) {
+int save(const OdWork& work, const std::vector<ReadObject>& objects, const canopen::Eds* eds) {
   std::ofstream file(work.options.save, std::ios::binary);
   std::vector<std::string> not_saved;
   file << canopen::write_dcf(
@@ -142,7 +109,7 @@ struct OwnSheet {
   std::string bytes;
   canopen::Eds eds;
 };
-std::optional<OwnSheet> own_sheet(const Work& work) {
+std::optional<OwnSheet> own_sheet(const OdWork& work) {
   constexpr std::uint16_t kStoreEds = 0x1021, kStoreFormat = 0x1022;
   const std::string node = std::to_string(work.options.node);
   const SdoOutcome stored = work.access.read(work.node(), kStoreEds, 0);
@@ -168,14 +135,14 @@ std::optional<OwnSheet> own_sheet(const Work& work) {
   return own;
 }
 
-int write_own(const Work& work, const OwnSheet& own) {
+int write_own(const OdWork& work, const OwnSheet& own) {
   if (const int code = write_bytes(work.options.write_eds, own.bytes); code != kDone) return code;
   tell(say(kOwnSheet,
            {work.options.write_eds, std::to_string(work.options.node), std::to_string(own.bytes.size())}));
   return kDone;
 }
 
-int write_found(const Work& work, std::vector<ReadObject> objects, const canopen::Eds* eds,
+int write_found(const OdWork& work, std::vector<ReadObject> objects, const canopen::Eds* eds,
                 const std::vector<IndexRange>& ranges) {
   canopen::SheetOrigin origin = sheet_origin(work.options.write_eds, "servogate od");
   origin.node = work.node();
@@ -184,41 +151,6 @@ int write_found(const Work& work, std::vector<ReadObject> objects, const canopen
   if (eds == nullptr) canopen::read_unused_places(work.access, work.node(), objects, work.over);
   if (work.over()) return kInfrastructure;
   return write_sheet(work.options.write_eds, canopen::sheet_of_device(objects, eds, origin), work.node());
-}
-
-int compare(const Work& work, const canopen::Eds& file) {
-  int compared = 0;
-  const int of = file.commissioning ? file.commissioning->node : 0;
-  if (of != 0 && of != work.options.node)
-    complain(kOtherNode, {work.options.compare, std::to_string(of), std::to_string(work.options.node)});
-  const std::vector<Difference> found =
-      canopen::differences(work.access, work.node(), file, compared, work.over);
-  const ObjectCatalogue catalogue(&file);
-  json list = json::array();
-  for (const Difference& d : found) {
-    const std::string got = d.outcome.ok() ? show_value(d.outcome.data, d.type) : d.outcome.why();
-    if (work.options.json) {
-      json row = place_json(catalogue, d.index, d.subindex);
-      row["device"] = got;
-      row["file"] = d.wanted;
-      list.push_back(std::move(row));
-    } else {
-      print_line(say(kDiffers, {place_words(catalogue, d.index, d.subindex), got, d.wanted}));
-    }
-  }
-  if (work.options.json) {
-    json out = head(work.options);
-    out["compared"] = compared;
-    if (of != 0) out["file_node"] = of;
-    out["differences"] = std::move(list);
-    print_json(out);
-  } else if (found.empty()) {
-    print_line(
-        say(kEqual, {std::to_string(work.options.node), work.options.compare, std::to_string(compared)}));
-  } else {
-    complain(kMany, {std::to_string(found.size()), std::to_string(compared), work.options.compare});
-  }
-  return found.empty() ? kDone : kAlarm;
 }
 
 /// FIRST-LAST; false: it is none.
@@ -231,7 +163,7 @@ bool parse_range(const std::string& text, IndexRange& range) {
   return true;
 }
 
-int work_on(const Work& work, const canopen::Eds* eds, const canopen::Eds* file,
+int work_on(const OdWork& work, const canopen::Eds* eds, const canopen::Eds* file,
             const std::vector<IndexRange>& ranges, const std::string* refusal) {
   const SdoOutcome alive = work.access.read(work.node(), 0x1000, 0);
   if (!alive.answered()) {
@@ -239,7 +171,8 @@ int work_on(const Work& work, const canopen::Eds* eds, const canopen::Eds* file,
                        refusal != nullptr && !refusal->empty() ? ": " + *refusal : ""});
     return kAlarm;
   }
-  if (file != nullptr) return compare(work, *file);
+  if (file != nullptr)
+    return work.options.restore.empty() ? compare_parameters(work, *file) : restore_parameters(work, *file);
   const std::optional<OwnSheet> own = work.options.write_eds.empty() ? std::nullopt : own_sheet(work);
   if (own && eds == nullptr) eds = &own->eds;
   const std::vector<ReadObject> objects =
@@ -271,21 +204,23 @@ int od(const OdOptions& options) {
       return kWrongUse;
     }
   }
-  if (const auto problem =
-          files::problem_of_outputs({{"--save", options.save}, {"--write-eds", options.write_eds}},
-                                    {{"--eds", options.eds}, {"--compare", options.compare}})) {
+  if (const auto problem = files::problem_of_outputs(
+          {{"--save", options.save}, {"--write-eds", options.write_eds}},
+          {{"--eds", options.eds}, {"--compare", options.compare}, {"--restore", options.restore}})) {
     complain(*problem->entry, problem->arguments);
     return problem->wrong_use ? kWrongUse : kInfrastructure;
   }
   std::optional<canopen::Eds> eds, file;
   if (!options.eds.empty() && !(eds = read_data_sheet(options.eds))) return kWrongUse;
-  if (!options.compare.empty() && !(file = read_data_sheet(options.compare))) return kWrongUse;
+  const std::string& configuration = options.restore.empty() ? options.compare : options.restore;
+  if (!configuration.empty() && !(file = read_data_sheet(configuration))) return kWrongUse;
   if (file) canopen::follow_node(*file);
   const canopen::Eds* sheet = eds ? &*eds : nullptr;
   const canopen::Eds* other = file ? &*file : nullptr;
   int code = kDone;
   std::optional<Holder> holder;
   if (!find_holder(options.bus, holder, code)) return code;
+  if (holder && !options.restore.empty()) return refuse_held(*holder, options.bus, "`od --restore`");
   if (holder) {
     const auto held = HeldBus::open(*holder, options.timeout_ms);
     if (held == nullptr) return kInfrastructure;
@@ -294,7 +229,8 @@ int od(const OdOptions& options) {
   }
   const auto bus = ToolBus::open(options, code);
   if (bus == nullptr) return code;
-  if (code = may_read(*bus, options); code != kDone) return bus->finish(code);
+  code = options.restore.empty() ? may_read(*bus, options) : must_be_idle(*bus, "`od --restore`", options);
+  if (code != kDone) return bus->finish(code);
   return bus->finish(
       work_on({options, *bus, [&] { return bus->over(); }, bus->bit_rate()}, sheet, other, ranges, nullptr));
 }

@@ -70,8 +70,9 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
   parts.period_ns = m.cycle_ns();
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
     image::CanBus* bus = m.buses[b].mock() ? c->world_->bus(b) : c->transports_[b].bus.get();
+    c->taps_.push_back(std::make_unique<BusTap>(*bus, static_cast<int>(b)));
     c->suppliers_.push_back(std::make_unique<CanSupplier>(
-        *bus, segment_config(c->loaded_, static_cast<int>(b)), drive_points(m, m.buses[b].name)));
+        *c->taps_.back(), segment_config(c->loaded_, static_cast<int>(b)), drive_points(m, m.buses[b].name)));
     parts.devices.push_back(c->suppliers_.back().get());
     for (const canopen::NodeConfig& node : c->suppliers_.back()->segment().config().nodes)
       if (node.target == canopen::DriveTarget::io)

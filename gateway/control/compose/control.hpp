@@ -9,6 +9,7 @@
 
 #include "firmware_if/image/alarms/alarm_text.hpp"
 #include "gateway/control/compose/alarms/alarm_rooms.hpp"
+#include "gateway/control/compose/bus_tap.hpp"
 #include "gateway/control/compose/can_supplier.hpp"
 #include "gateway/control/compose/can_transport.hpp"
 #include "gateway/control/compose/devices/open_devices.hpp"
@@ -88,6 +89,8 @@ class Control {
   MachineFaults& faults() noexcept { return *faults_; }
   plc::Logic* logic() noexcept { return logic_.get(); }
   const std::vector<std::unique_ptr<CanSupplier>>& suppliers() const noexcept { return suppliers_; }
+  /// Where what its master sends and hears can be observed, by bus.
+  const std::vector<std::unique_ptr<BusTap>>& taps() const noexcept { return taps_; }
   /// Real time: the cycle that step() is about to run was due at this time of `clock`. From the first call on
   /// every SYNC is timed. real-time safe.
   void open_cycle(const image::Clock& clock, image::Nanoseconds due_ns) noexcept;
@@ -136,6 +139,7 @@ class Control {
   std::unique_ptr<MachineFaults> faults_;
   std::vector<OpenDevice> devices_;       ///< of no bus, in the order of the file
   std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
+  std::vector<std::unique_ptr<BusTap>> taps_;  ///< by bus
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;
   image::Nanoseconds world_ahead_ns_ = 0;  ///< what late cycles let the world live longer

@@ -22,6 +22,8 @@ constexpr image::Nanoseconds kPublished =
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr int kFirstLooks = 200;
 
+const text::Entry kNotTriggered{"capture.not-triggered", "{0} was not written: the trigger did not come",
+                                "файл {0} не записан: событие не наступило"};
 const text::Entry kVirtualNeedsMock{
     "cli.virtual-needs-mock", "'{0}' is a real bus: virtual time is for mock buses only; use --realtime",
     "«{0}» — настоящая шина: виртуальное время только для имитаций; нужен --realtime"};
@@ -109,6 +111,15 @@ Session& RunningMachine::watch(const Outputs& outputs) {
   return *session_;
 }
 
+bool RunningMachine::capture(const CaptureRequest& request, drivers::Notice& why) {
+  capture_ = MachineCapture::open(*control_, request, why);
+  return capture_ != nullptr;
+}
+
+void RunningMachine::keep_black_box(const std::string& folder) {
+  black_box_ = MachineCapture::black_box(*control_, folder);
+}
+
 bool RunningMachine::begin(std::vector<drivers::Notice>& refusals) {
   if (settings_.clock != ClockKind::virtual_time) return begin_realtime(refusals);
   if (paced())
@@ -142,6 +153,10 @@ std::vector<RunningMachine::Lost> RunningMachine::close_files() {
   if (session_ != nullptr) note(trace_, session_->close());
   if (record_ != nullptr) note(settings_.record, record_->close());
   if (can_log_ != nullptr) note(settings_.can_log, can_log_->close());
+  for (const auto& capture : {capture_.get(), black_box_.get()})
+    if (capture != nullptr) note(capture->path(), capture->close());
+  if (capture_ != nullptr && !captured() && settings_.announce)
+    settings_.announce(kNotTriggered, {capture_->path()});
   return lost;
 }
 
@@ -169,6 +184,8 @@ void RunningMachine::wait_for_room() {
   if (session_ != nullptr) session_->wait_for_room();
   if (record_ != nullptr) record_->wait_for_room();
   if (can_log_ != nullptr) can_log_->wait_for_room();
+  for (const auto& capture : {capture_.get(), black_box_.get()})
+    if (capture != nullptr) capture->wait_for_room();
 }
 
 bool RunningMachine::cycle() {
@@ -190,6 +207,8 @@ bool RunningMachine::move_on(image::Nanoseconds late_ns) {
 void RunningMachine::after_cycle(image::Nanoseconds late_ns) noexcept {
   journal_.note(control_->cycle().image());
   if (session_ != nullptr) session_->after_cycle(late_ns);
+  if (capture_ != nullptr) capture_->after_cycle();
+  if (black_box_ != nullptr) black_box_->after_cycle();
   if (record_ == nullptr || record_broken_ || !record_->broken()) return;
   record_broken_ = true;
   image::AlarmRecord r;

@@ -13,6 +13,7 @@
 #include "gateway/control/run/announce.hpp"
 #include "gateway/control/run/block_journal.hpp"
 #include "gateway/control/run/can_log.hpp"
+#include "gateway/control/run/capture/machine_capture.hpp"
 #include "gateway/control/run/clock_kind.hpp"
 #include "gateway/control/run/record_file.hpp"
 #include "gateway/control/run/retained_keeper.hpp"
@@ -67,6 +68,12 @@ class RunningMachine final : public bench::Machine {
 
   /// Statistics, trace and picture from the next cycle on. Before the first.
   Session& watch(const Outputs& outputs);
+  /// A capture of chosen values from the next cycle on. Before the first. False: refused, `why` says why.
+  bool capture(const CaptureRequest& request, drivers::Notice& why);
+  /// After close_files(): the capture has written its file.
+  bool captured() const noexcept { return capture_ != nullptr && capture_->files() > 0; }
+  /// Writes the last seconds into `folder` at each alarm. Before the first cycle.
+  void keep_black_box(const std::string& folder);
   /// Starts the loop of a machine that moves by itself; nothing in virtual time without a pace. False: the
   /// system refuses real time. `refusals`: why, or what it goes on without.
   bool begin(std::vector<drivers::Notice>& refusals);
@@ -135,6 +142,7 @@ class RunningMachine final : public bench::Machine {
   std::unique_ptr<Control> control_;
   std::unique_ptr<RecordWriter> record_;
   std::unique_ptr<CanLog> can_log_;
+  std::unique_ptr<MachineCapture> capture_, black_box_;
   bool record_broken_ = false;  ///< and said so
   std::string trace_;
   std::unique_ptr<Session> session_;

@@ -129,8 +129,9 @@ struct SpindleConfig {
   double orient_rpm = 60.0;
   double orient_window = 0.5;  ///< degrees
   double orient_timeout = 10.0;
-  double orient_gain = 5.0;  ///< 1/s, speed for each degree of error; below 1 / (2 x dead time)
-  bool encoder = true;       ///< the supplier gives counts; without them no oriented stop
+  double orient_gain = 5.0;    ///< 1/s, speed for each degree of error; below 1 / (2 x dead time)
+  double encoder_delay = 0.0;  ///< s by which its counts are older than those of a drive latched at SYNC
+  bool encoder = true;         ///< the supplier gives counts; without them no oriented stop
   image::PartPlace drive;
   std::optional<InverterConfig> inverter;  ///< supplies the spindle instead of a drive, without an encoder
   GearboxConfig gearbox;    ///< its counts are those of the motor, as if the first gear were in force

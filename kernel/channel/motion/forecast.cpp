@@ -36,7 +36,6 @@ std::optional<text::Finding> Forecast::take(const program::Command& command) {
     begin_anew();
     return cannot_drive(flaw);
   }
-  if (auto finding = not_driven(command)) return finding;
   if (const auto* spindle = std::get_if<program::Spindle>(&command.what)) elements_.take(*spindle);
   if (!passes(command)) rest();
   return std::nullopt;

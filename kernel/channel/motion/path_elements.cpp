@@ -90,34 +90,62 @@ path::Element PathElements::element(const program::Command& command, const path:
     const double radius = std::hypot(from[e.axis1] - e.center1, from[e.axis2] - e.center2);
     set_feed(e, from, arc->feed, radius * std::abs(arc->sweep_deg) * std::numbers::pi / 180.0);
     e.transition = transition(arc->corner);
+  } else if (const auto* thread = std::get_if<program::Thread>(&command.what)) {
+    e.to = path_position(thread->to);
+    set_thread(e, from, *thread);
+  } else if (const auto* probe = std::get_if<program::Probe>(&command.what)) {
+    e.to = path_position(probe->to);
+    e.feed = probe->feed_mm_min / 60.0;
   }
   return e;
 }
 
-/// A program's feed is that of the vector over millimetres and degrees alike (NC-110: specification A 17.1);
-/// the path counts along the linear axes, or the rotary ones where only they move.
+/// Of the vector over millimetres and degrees.
+double PathElements::length(const path::Element& e, const path::Vector& from, double arc_length) const {
+  double square = arc_length * arc_length;
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
+    const bool in_plane = e.kind == path::Element::Kind::arc && (i == e.axis1 || i == e.axis2);
+    if (!in_plane) square += (e.to[i] - from[i]) * (e.to[i] - from[i]);
+  }
+  return std::sqrt(square);
+}
+
+/// The lead is that of the axis with the longest way; parts of a chain that meet in a corner are rounded.
+void PathElements::set_thread(path::Element& e, const path::Vector& from,
+                              const program::Thread& thread) const {
+  constexpr double kCorner = 0.02;  // mm
+  double square = 0.0, longest = 0.0;
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
+    const double d = std::abs(e.to[i] - from[i]);
+    square += d * d;
+    if (!config_.rotary[i]) longest = std::max(longest, d);
+  }
+  const double share = longest > 0.0 ? std::sqrt(square) / longest : 1.0;
+  e.lock.kind = thread.tap ? path::Lock::Kind::tap_in : path::Lock::Kind::thread;
+  e.lock.per_turn = thread.lead * share;
+  e.lock.change = thread.lead_change * share;
+  e.lock.start = thread.start_angle_deg / 360.0 - std::floor(thread.start_angle_deg / 360.0);
+  e.revolutions = rpm(e, from, spindle_at_) / 60.0;
+  e.feed = e.lock.per_turn * e.revolutions;
+  if (thread.tap) return;
+  e.transition.continuation = path::Continuation::continuous;
+  e.transition.tolerance = kCorner;
+}
+
+/// A program's feed is that of the vector over millimetres and degrees alike (NC-110: specification A 17.1).
 void PathElements::set_feed(path::Element& e, const path::Vector& from, const program::Feed& feed,
                             double arc_length) const {
-  double linear = arc_length * arc_length, turning = 0.0;
-  for (std::size_t i = 0; i < axes_.machine.size(); ++i) {
-    const double d = e.to[i] - from[i];
-    const bool in_plane = e.kind == path::Element::Kind::arc && (i == e.axis1 || i == e.axis2);
-    if (!in_plane) (config_.rotary[i] ? turning : linear) += d * d;
-  }
-  const double length = std::sqrt(linear > 1e-12 * turning ? linear : turning);
-  const double vector = std::sqrt(linear + turning);
-  const double share = vector > 0.0 ? length / vector : 1.0;
   switch (feed.unit) {
     case program::FeedUnit::mm_per_min:
-      e.feed = feed.value / 60.0 * share;
+      e.feed = feed.value / 60.0;
       break;
     case program::FeedUnit::inverse_time:
-      e.feed = feed.value * length / 60.0;
+      e.feed = feed.value * length(e, from, arc_length) / 60.0;
       break;
     case program::FeedUnit::mm_per_rev:
       e.revolutions = rpm(e, from, spindle_at_) / 60.0;
       e.surface = surface(e, from);
-      e.feed = feed.value * e.revolutions * share;
+      e.feed = feed.value * e.revolutions;
       break;
   }
 }
@@ -160,6 +188,8 @@ const program::Position* destination(const program::Command& command) {
   if (const auto* rapid = std::get_if<program::Rapid>(&command.what)) return &rapid->to;
   if (const auto* line = std::get_if<program::Line>(&command.what)) return &line->to;
   if (const auto* arc = std::get_if<program::Arc>(&command.what)) return &arc->to;
+  if (const auto* thread = std::get_if<program::Thread>(&command.what)) return &thread->to;
+  if (const auto* probe = std::get_if<program::Probe>(&command.what)) return &probe->to;
   return nullptr;
 }
 
@@ -198,24 +228,17 @@ text::Finding rests_inside() {
   return finding;
 }
 
+text::Finding tap_open() {
+  text::Finding finding;
+  finding.entry = &texts::kTapOpen;
+  return finding;
+}
+
 text::Finding cannot_drive(path::Flaw flaw) {
   const text::Entry& why = texts::kFlaws[static_cast<std::size_t>(flaw)];
   text::Finding finding;
   finding.entry = &texts::kCannotDrive;
   finding.arguments = {text::both(why.english, why.russian)};
-  return finding;
-}
-
-std::optional<text::Finding> not_driven(const program::Command& command) {
-  const auto is = [&]<typename What>(const What*) { return std::holds_alternative<What>(command.what); };
-  const char* name = is(static_cast<const program::Thread*>(nullptr))        ? "thread"
-                     : is(static_cast<const program::Probe*>(nullptr))       ? "probe"
-                     : is(static_cast<const program::SpindleMark*>(nullptr)) ? "spindle_mark"
-                                                                             : nullptr;
-  if (name == nullptr) return std::nullopt;
-  text::Finding finding;
-  finding.entry = &texts::kNotDriven;
-  finding.arguments = {name};
   return finding;
 }
 

@@ -42,10 +42,12 @@ class PathElements {
   int foreign_axis(const program::Command& command, const program::Position& stands) const;
   /// From here on feeds per revolution are those of this spindle word.
   void take(const program::Spindle& spindle);
-  /// Rapid, Line or Arc of a command that begins at `from`; its tag is left empty.
+  /// Rapid, Line, Arc, Thread or Probe of a command that begins at `from`; its tag is left empty.
   path::Element element(const program::Command& command, const path::Vector& from) const;
 
  private:
+  double length(const path::Element& element, const path::Vector& from, double arc_length) const;
+  void set_thread(path::Element& element, const path::Vector& from, const program::Thread& thread) const;
   void set_feed(path::Element& element, const path::Vector& from, const program::Feed& feed,
                 double arc_length) const;
   path::Surface surface(const path::Element& element, const path::Vector& from) const;
@@ -60,7 +62,7 @@ class PathElements {
   double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0, surface_center_ = 0.0;
 };
 
-/// True for Rapid, Line and Arc.
+/// True for Rapid, Line, Arc, Thread and Probe.
 bool is_motion(const program::Command& command);
 /// Where one of them ends; nullptr: it is another command.
 const program::Position* destination(const program::Command& command);
@@ -72,9 +74,8 @@ text::Finding process_not_started(int process, const std::string& program);
 text::Finding program_not_found(int process, const std::string& program);
 /// What keeps an element with this flaw from being driven; the place is for the caller to fill in.
 text::Finding cannot_drive(path::Flaw flaw);
+/// A tap that is not followed by its way back; the place is for the caller to fill in.
+text::Finding tap_open();
 /// The path rests inside a block, see path::Planner::take_unasked_rest().
 text::Finding rests_inside();
-/// A motion command that no part of the path room knows yet (thread, probe); nullopt: it is none.
-std::optional<text::Finding> not_driven(const program::Command& command);
-
 }  // namespace servogate::channel

@@ -4,9 +4,10 @@
 
 namespace servogate::channel::texts {
 
-inline constexpr text::Entry kNotDriven{"channel.not-driven",
-                                        "the command '{0}' cannot be driven by this version",
-                                        "команда «{0}» в этой версии не исполняется приводами"};
+inline constexpr text::Entry kTapOpen{
+    "channel.tap-open",
+    "behind a tap come the spindle reversed and the way back to where it began; here it is something else",
+    "за резьбонарезанием метчиком следуют реверс шпинделя и возврат в начальную точку; здесь — другое"};
 inline constexpr text::Entry kNoSuchProcess{
     "channel.no-such-process", "there is no process {0}: this machine has {1} ([control] processes)",
     "процесса {0} нет: у этого станка их {1} ([control] processes)"};

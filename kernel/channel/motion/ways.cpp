@@ -150,6 +150,8 @@ void Ways::put(const Part& part, bool last, const path::Vector& at, double feed)
   if (feed > 0.0) {
     e.feed = e.kind == path::Element::Kind::rapid ? feed : std::min(e.feed, feed);
     if (e.kind == path::Element::Kind::rapid) e.kind = path::Element::Kind::line;
+    e.revolutions = 0.0;  // a spindle that turns faster would drive it faster
+    e.surface = {};
   }
   if (number == 0) join(e, path::position(shape, part.begin, config_.axis_count), number + kToBegin);
   if (is_back && part.end <= 0.0 && part.element > first_)

@@ -166,10 +166,9 @@ double path_rate(const Config& config, const Piece& p) {
     }
   };
   for (int k = 0; k < 5; ++k) {
-    double linear = 0.0;
-    for (int i = 0; i < config.axis_count; ++i)
-      if (!config.rotary[i]) linear += control(i, k) * control(i, k);
-    worst = std::max(worst, std::sqrt(linear) / p.full);
+    double square = 0.0;
+    for (int i = 0; i < config.axis_count; ++i) square += control(i, k) * control(i, k);
+    worst = std::max(worst, std::sqrt(square) / p.full);
   }
   return std::max(1.0, worst);
 }
@@ -177,10 +176,23 @@ double path_rate(const Config& config, const Piece& p) {
 Bound bound(const Config& config, const Piece& piece, const Pace& pace) {
   Bound out;
   out.feed.speed = pace.feed / path_rate(config, piece);
+  if (pace.lock.kind != Lock::Kind::none) {
+    const double begin = pace.lock.per_turn_at(piece.offset),
+                 end = pace.lock.per_turn_at(piece.offset + piece.length);
+    out.feed.lock = pace.lock;
+    if (piece.shape == Piece::Shape::line)
+      out.feed.lock.per_turn = begin;
+    else
+      out.feed.lock.change = 0.0;
+    out.feed.speed = std::max(begin, end) * pace.turns / path_rate(config, piece);
+  }
   if (pace.turns > 0.0) out.feed.per_turn = out.feed.speed / pace.turns;
   out.feed.turns = pace.turns;
   out.feed.rapid = piece.rapid;
-  out.box = box(config, piece, std::min(pace.cap, out.feed.speed * config.largest_override));
+  // What a line may accelerate does not depend on its speed: its master may bring it to the axes' limits.
+  const bool free = pace.lock.kind != Lock::Kind::none && piece.shape == Piece::Shape::line;
+  out.box =
+      box(config, piece, free ? pace.cap : std::min(pace.cap, out.feed.speed * config.largest_override));
   out.feed.speed = std::min(out.feed.speed, out.box.velocity);
   return out;
 }

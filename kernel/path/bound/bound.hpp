@@ -15,6 +15,7 @@ struct Feed {
   double speed = 0.0;     ///< at override 1, with the spindle turning as planned; within the box
   double per_turn = 0.0;  ///< in one revolution of the spindle, 0: feed per time
   double turns = 0.0;     ///< revolutions a second that `speed` is planned for
+  Lock lock{};            ///< by the angle of the spindle, from the begin of the piece on
   bool rapid = false;     ///< follows the override up to 1 only
 };
 
@@ -27,7 +28,7 @@ struct Bound {
 /// The box of a piece whose speed will not exceed `velocity_cap` (infinite: as fast as the limits).
 Box box(const Config& config, const Piece& piece, double velocity_cap);
 
-/// Largest speed over the linear axes (over all where none moves) for a parameter speed of 1.
+/// Largest speed of the vector over mm and degrees for a parameter speed of 1.
 double path_rate(const Config& config, const Piece& piece);
 
 /// Box and feed of a piece as the contour put it.

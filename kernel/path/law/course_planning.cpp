@@ -12,7 +12,6 @@ constexpr std::int64_t kAgain = 24;               // knots until one that did no
 Pipeline::Settings settings(const Config& config) {
   Pipeline::Settings s;
   s.axes = config.axis_count;
-  s.rotary = config.rotary;
   s.reserve = config.reserve;
   s.transformation = config.transformation;
   return s;

@@ -26,7 +26,6 @@ Pipeline::Pipeline(const Settings& settings, KnotSink& sink)
     t.first = n == 0;
     SpeedWindows::Settings s;
     s.axes = settings.axes;
-    s.rotary = settings.rotary;
     s.reserve = settings.reserve;
     s.transformation = settings.transformation;
     s.judged = n + 1 == settings.passes;

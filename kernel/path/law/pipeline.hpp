@@ -52,7 +52,6 @@ class Pipeline {
  public:
   struct Settings {
     int axes = 3;
-    std::array<bool, kMaxAxes> rotary{};
     double reserve = 0.01;  ///< share of the limits that stays for a change of rate
     const Transformation* transformation = &identity();  ///< from the legs' coordinates to the axes
     int passes = 2;

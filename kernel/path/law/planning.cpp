@@ -13,6 +13,7 @@ constexpr double kSpansPerCycle = 4.0;
 
 /// Stretches that may be driven as one: their feeds have the same master.
 bool same_master(const Feed& a, const Feed& b) {
+  if (a.lock.kind != b.lock.kind || a.lock.change != b.lock.change || a.lock.change != 0.0) return false;
   if (a.per_turn == 0.0 || b.per_turn == 0.0) return a.per_turn == b.per_turn;
   return std::abs(a.per_turn - b.per_turn) <= 1e-3 * a.per_turn &&
          std::max(a.turns, b.turns) <= 1.05 * std::min(a.turns, b.turns);
@@ -71,6 +72,7 @@ void Planning::append(const Piece& piece, const Bound& bound) {
   feed.speed = std::min(feed.speed, bound.feed.speed);
   feed.per_turn = pieces_.empty() ? bound.feed.per_turn : std::min(feed.per_turn, bound.feed.per_turn);
   feed.turns = std::max(feed.turns, bound.feed.turns);
+  if (pieces_.empty()) feed.lock = bound.feed.lock;
   feed.rapid = bound.feed.rapid;  // a rapid shares no span with others: it starts and ends at rest
   pieces_.push_back(piece);
 }

@@ -11,8 +11,7 @@ namespace servogate::path {
 
 /// What a knot of the curve may not exceed.
 struct KnotBound {
-  double feed = 0.0;     ///< along the axes that count for it, mm/s or degrees/s, > 0; infinite: none
-  bool turning = false;  ///< the rotary axes count for the feed, else the linear ones
+  double feed = 0.0;  ///< speed of the vector over mm and degrees, per s, > 0; infinite: none
   const std::array<AxisLimits, kMaxAxes>* limits = nullptr;  ///< of the axes, as Config has them
 };
 
@@ -22,7 +21,6 @@ struct KnotBound {
 struct SpeedProblem {
   int axes = 0;                         ///< 1 - kMaxAxes
   std::array<int, kMaxAxes> axis{};     ///< of the machine, for each axis of the controls
-  std::array<bool, kMaxAxes> rotary{};  ///< by axis of the machine
   double step = 0.0;                    ///< > 0
   std::span<const double> controls;     ///< `axes` values each, three more than intervals
   std::span<const KnotBound> bounds;    ///< one a knot

@@ -30,14 +30,14 @@ void SpeedLaw::prepare(const SpeedProblem& p) {
 void SpeedLaw::prepare_knot(const SpeedProblem& p, int k) {
   const double i1 = 1.0 / step_, i2 = i1 * i1;
   const KnotBound& bound = p.bounds[static_cast<std::size_t>(k)];
-  double linear = 0.0, turning = 0.0, cap = kLargestCap;
+  double along = 0.0, cap = kLargestCap;
   for (int a = 0; a < axes_; ++a) {
     const int axis = p.axis[static_cast<std::size_t>(a)];
     const AxisLimits& limits = (*bound.limits)[static_cast<std::size_t>(axis)];
     const double* c = &p.controls[static_cast<std::size_t>(k * axes_ + a)];
     const double d1 = 0.5 * i1 * (c[2 * axes_] - c[0]);
     const double d2 = i2 * (c[2 * axes_] - 2.0 * c[axes_] + c[0]);
-    (p.rotary[static_cast<std::size_t>(axis)] ? turning : linear) += d1 * d1;
+    along += d1 * d1;
     const double v = p.share * limits.velocity, s = 1.0 / (p.share * limits.acceleration);
     cap = std::min(cap, v * v / std::max(1e-30, d1 * d1));
     const auto at = static_cast<std::size_t>(k * axes_ + a);
@@ -46,7 +46,6 @@ void SpeedLaw::prepare_knot(const SpeedProblem& p, int k) {
     acceleration_[2 * at - static_cast<std::size_t>(a)] = {
         {s * 0.5 * (d2 - d1 * i1), s * 0.5 * (d2 + d1 * i1), 0.0}};
   }
-  const double along = bound.turning ? turning : linear;
   if (std::isfinite(bound.feed)) cap = std::min(cap, bound.feed * bound.feed / std::max(1e-30, along));
   cap_[static_cast<std::size_t>(k)] = cap;
 }

@@ -128,11 +128,9 @@ void SpeedWindows::bounds(const Run& run, const Kept<double>& places, std::size_
     while (end < run.end() && run.leg(end).begin < behind) ++end;
     KnotBound bound;
     bound.feed = std::numeric_limits<double>::infinity();
-    bound.turning = run.leg(leg).turning;
     const Vector x = run.at(u, leg);
     for (std::size_t n = first; n < end; ++n) {
-      if (run.leg(n).turning == bound.turning)
-        bound.feed = std::min(bound.feed, kFeedShare * feed_at(run.leg(n), x));
+      bound.feed = std::min(bound.feed, kFeedShare * feed_at(run.leg(n), x));
       if (n > first) bound.feed = std::min(bound.feed, kFeedShare * run.leg(n).corner);
     }
     bound.limits = merged(run, first, end);
@@ -156,7 +154,6 @@ void SpeedWindows::pack(const Kept<Vector>& controls, std::size_t to) {
   for (const Vector& control : on_axes_)
     for (std::size_t a = 0; a < static_cast<std::size_t>(problem_.axes); ++a)
       controls_.push_back(control[static_cast<std::size_t>(problem_.axis[a])]);
-  problem_.rotary = settings_.rotary;
   problem_.step = settings_.step;
   problem_.controls = controls_;
   problem_.bounds = bounds_;

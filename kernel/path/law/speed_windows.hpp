@@ -15,7 +15,6 @@ class SpeedWindows {
  public:
   struct Settings {
     int axes = 0;
-    std::array<bool, kMaxAxes> rotary{};
     double step = 0.0;      ///< s of a knot interval of the clock
     double reserve = 0.01;  ///< share of the limits that is not planned for
     const Transformation* transformation = &identity();

@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Pace pace_of(const Element& e) {
   if (e.kind == Element::Kind::rapid) return {};
-  return {e.feed, e.revolutions, kInfinity};
+  return {e.feed, e.revolutions, e.lock, kInfinity};
 }
 
 /// Of a blend between two elements: the slower one, by the spindle where one of them is.
@@ -22,8 +22,10 @@ Pace slower(const Element& a, const Element& b) {
   if ((a.revolutions > 0.0) != (b.revolutions > 0.0)) {
     const Element& turned = a.revolutions > 0.0 ? a : b;
     const double share = std::min(1.0, std::min(a.feed, b.feed) / turned.feed);
-    return {turned.feed * share, turned.revolutions, kInfinity};
+    return {turned.feed * share, turned.revolutions, {}, kInfinity};
   }
+  // By the spindle's angle the blend is bounded for the faster one: nothing slows down into it.
+  if (a.lock.kind != Lock::Kind::none) return pace_of(a.feed <= b.feed ? b : a);
   return pace_of(a.feed <= b.feed ? a : b);
 }
 
@@ -107,6 +109,7 @@ bool Contour::always_stops(const Element& e) const {
   const Transition& t = waiting_element_.transition;
   if (t.continuation == Continuation::exact_stop || !(t.tolerance > 0.0)) return true;
   if (waiting_element_.kind == Element::Kind::rapid || e.kind == Element::Kind::rapid) return true;
+  if (waiting_element_.lock.kind != e.lock.kind || e.lock.kind > Lock::Kind::thread) return true;
   return t.continuation == Continuation::corner_limited && t.erf <= 0.0;
 }
 

@@ -14,6 +14,7 @@ namespace servogate::path {
 struct Pace {
   double feed = std::numeric_limits<double>::infinity();  ///< mm/s, as Element::feed; infinite: a rapid
   double turns = 0.0;  ///< revolutions a second that belong to it, 0: feed per time
+  Lock lock{};         ///< by the angle of the spindle; of the whole element
   double cap = std::numeric_limits<double>::infinity();  ///< parameter speed that a corner rule allows
 };
 

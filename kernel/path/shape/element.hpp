@@ -30,6 +30,15 @@ enum class Law : std::uint8_t {
   course,   ///< shape and law over one clock, acceleration carried through
 };
 
+/// What a motion by the turns of the spindle does where it cannot be driven to its end.
+struct Threads {
+  /// mm (degrees) by which each axis leaves the thread when its master is lost or the motion is stopped; all
+  /// 0: the path only slows down.
+  std::array<double, kMaxAxes> retract{};
+  bool hold_retracts = false;  ///< a hold leaves the thread, otherwise the pass goes on to its end
+  double window = 0.2;         ///< mm of path: further off its master it is left
+};
+
 class Transformation;
 /// Path coordinates are those of the axes.
 const Transformation& identity() noexcept;
@@ -49,6 +58,7 @@ struct Config {
   /// faster where elements are short; planning it costs by the time that it takes.
   Law law = Law::fitting;
   const Transformation* transformation = &identity();  ///< axes/; from path coordinates to the axes
+  Threads threads{};
 };
 
 /// Where an element comes from, carried to the set-point: for displays, alarms and traces.
@@ -93,6 +103,27 @@ inline double turns_at(const Surface& surface, const Vector& x) noexcept {
   return std::max(surface.least, free);
 }
 
+/// Motion by the angle of the spindle: the path parameter goes with the measured revolutions.
+struct Lock {
+  enum class Kind : std::uint8_t {
+    none,
+    thread,   ///< begins at an angle of the spindle, ends at its end whatever the spindle does then
+    tap_in,   ///< a line to the depth, in which the spindle is reversed; the next element is its way out
+    tap_out,  ///< the same line back
+  };
+  Kind kind = Kind::none;
+  double per_turn = 0.0;  ///< mm of path in a revolution where the element begins, > 0
+  double change = 0.0;    ///< of that in each revolution
+  double start =
+      0.0;  ///< revolutions from the zero mark to where the thread begins, 0 - 1; of its first element
+  bool operator==(const Lock&) const = default;
+
+  /// mm of path in a revolution, `s` behind the begin of the element. real-time safe.
+  double per_turn_at(double s) const noexcept {
+    return std::sqrt(std::max(0.0, per_turn * per_turn + 2.0 * change * s));
+  }
+};
+
 /// One element of the programmed path, from where the one before ends.
 struct Element {
   enum class Kind : std::uint8_t { line, arc, rapid };
@@ -103,12 +134,13 @@ struct Element {
   std::uint8_t axis1 = 0, axis2 = 1;
   double center1 = 0.0, center2 = 0.0;
   double sweep_deg = 0.0;
-  /// mm/s along the linear axes, degrees/s where only rotary axes move; > 0. A rapid ignores it and is as
-  /// fast as the axis limits; it always starts and ends with an exact stop.
+  /// Speed of the vector over mm and degrees, mm/s (degrees/s); > 0. A rapid ignores it and is as fast as the
+  /// axis limits; it always starts and ends with an exact stop.
   double feed = 0.0;
   /// Feed per revolution: `feed` is that at so many revolutions a second of the spindle, the most that it is
   /// planned for, and it goes with the speed that Follower::set_spindle() tells; 0: feed per time.
   double revolutions = 0.0;
+  Lock lock{};      ///< lines: driven by the spindle's angle, with `feed` at so many `revolutions`
   Surface surface;  ///< of a feed per revolution; courses follow it from place to place
   Transition transition;
   std::uint8_t limit_set = 0;  ///< reserved: rough, finish, thread

@@ -96,11 +96,6 @@ void Gather::put(const Element& e, const Piece& piece) {
   leg.limits = &config_.limits;
   leg.axes = axes_moved(config_, piece);
   if (open_) leg.corner = corner_speed(config_, before_, last_, piece);
-  leg.turning = true;
-  for (int i = 0; i < config_.axis_count; ++i)
-    if (!config_.rotary[static_cast<std::size_t>(i)] &&
-        (at_[i] != e.to[i] || piece.shape == Piece::Shape::arc))
-      leg.turning = false;
   const double own = goes_on(e) ? e.transition.tolerance : 0.0, begin = open_ ? before_.tolerance : 0.0;
   leg.exact = own == 0.0 && begin == 0.0;
   leg.tolerance = leg.exact ? kUsual : own == 0.0 ? begin : begin == 0.0 ? own : std::min(own, begin);

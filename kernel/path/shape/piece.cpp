@@ -21,14 +21,9 @@ bool finite(const Config& config, const Element& e) {
          (e.kind == Element::Kind::rapid || std::isfinite(e.feed));
 }
 
-/// Length of a move by the rule of the house: over the linear axes, or over the rotary ones where those
-/// hardly move.
-double parameter_length(const Config& config, const Vector& delta, double extra_linear) {
-  double linear = extra_linear * extra_linear, turning = 0.0;
-  for (int i = 0; i < config.axis_count; ++i) (config.rotary[i] ? turning : linear) += delta[i] * delta[i];
-  linear = std::sqrt(linear);
-  turning = std::sqrt(turning);
-  return linear > 1e-6 * turning ? linear : turning;
+/// Length of a move: of the vector over millimetres and degrees.
+double parameter_length(const Config& config, const Vector& delta, double along_arc) {
+  return std::hypot(norm(delta, config.axis_count), along_arc);
 }
 
 void straight_axes(const Config& config, Piece& piece, const Vector& from, const Vector& to) {

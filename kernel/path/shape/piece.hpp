@@ -13,8 +13,8 @@ struct PathPoint {
 
 /// One piece of the geometry that is driven: a line, an arc (circle, helix; a radius that changes by a
 /// rounding error in the program makes it a spiral, so that both ends are exact) or a blend. The parameter
-/// sigma runs from 0 to `length`; on lines and arcs it is the length over the linear axes (over the rotary
-/// ones where no linear axis moves), on blends close to it. Position, first and second derivative are
+/// sigma runs from 0 to `length`; on lines and arcs it is the length of the vector over mm and degrees, on
+/// blends close to it. Position, first and second derivative are
 /// continuous from piece to piece.
 struct Piece {
   enum class Shape : std::uint8_t { line, arc, blend };

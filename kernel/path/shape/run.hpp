@@ -21,7 +21,6 @@ struct Leg {
   double corner =
       std::numeric_limits<double>::infinity();  ///< largest speed where it starts, by a corner rule
   std::uint32_t axes = 0;  ///< bits of the axes that it moves through a transformation; 0: its coordinates
-  bool turning = false;    ///< its parameter counts degrees: only rotary axes move
   const std::array<AxisLimits, kMaxAxes>* limits = nullptr;  ///< of the axes, while it is driven
   double end() const { return begin + piece.length; }
 };

@@ -52,9 +52,12 @@ struct Arc {
   Feed feed;
   CornerRule corner;
 };
+/// A motion by the measured turns of the spindle, along which the longest axis moves by `lead` mm in each,
+/// and by `lead_change` more in each that follows; it begins at an angle behind the zero mark.
 struct Thread {
   Position to{};
   double lead = 0.0, lead_change = 0.0, start_angle_deg = 0.0;
+  bool tap = false;  ///< to the depth; behind it come the spindle reversed and the same way back
 };
 struct Dwell {
   double seconds = 0.0;
@@ -104,6 +107,7 @@ struct Wait {
 struct Stop {
   bool optional = false;
 };
+/// A motion until the probe touches, at most to `to`, which it does not reach unless nothing is there.
 struct Probe {
   Position to{};
   double feed_mm_min = 0.0;

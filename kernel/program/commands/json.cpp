@@ -147,6 +147,7 @@ struct Fields {
     w.field("lead", c.lead);
     w.field("lead_change", c.lead_change);
     w.field("start_angle", c.start_angle_deg);
+    if (c.tap) w.flag("tap", true);
   }
   void operator()(const Dwell& c) const { w.field("seconds", c.seconds); }
   void operator()(const Spindle& c) const {

@@ -208,6 +208,20 @@ Step Execution::next(const image::Packets& packets, bool synchronised) {
   return data_.queue.take();
 }
 
+void Execution::probed(const Position& at) {
+  ProbingState& probing = state_.probing;
+  if (probing.take == nullptr) return;
+  probing.touches.push_back(at);
+  if (probing.touches.size() < probing.expected) return;
+  void (*const take)(Execution&) = probing.take;
+  try {
+    take(*this);
+  } catch (const ProgramError& error) {
+    stop_with(error);
+  }
+  state_.probing = {};
+}
+
 Step Execution::stop_with(const ProgramError& error) {
   data_.queue.clear();
   data_.last = Error{finding(error)};

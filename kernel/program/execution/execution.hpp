@@ -69,6 +69,8 @@ class Execution : public ValueSource {
   void mdi(std::string_view block);
   void reposition(const Position& at);
   void look_at(const Position& to_go) { data_.to_go = to_go; }
+  /// See Interpreter::probed().
+  void probed(const Position& at);
   /// What an axis still has to go in its block.
   double to_go(int axis) const noexcept {
     data_.snapshot_used = data_.machine_read = true;

@@ -81,6 +81,7 @@ int Interpreter::block_count() const { return impl_->run.flow().main_source().bl
 long long Interpreter::executed() const { return impl_->run.state().executed; }
 bool Interpreter::machine_read() const { return impl_->run.machine_read(); }
 void Interpreter::look_at(const Position& to_go) { impl_->run.look_at(to_go); }
+void Interpreter::probed(const Position& at) { impl_->run.probed(at); }
 void Interpreter::mdi(std::string_view block) { impl_->run.mdi(block); }
 void Interpreter::reposition(const Position& at) { impl_->run.reposition(at); }
 void Interpreter::adopt(Tables tables) { impl_->run.frames().adopt(std::move(tables)); }

@@ -89,6 +89,8 @@ class Interpreter {
   /// How far each axis of the machine still has to go in its block, mm or degrees, as the packets of the next
   /// next() are; programs may read it.
   void look_at(const Position& to_go);
+  /// The probe of the last Probe command has touched with the axes at `at`, machine coordinates.
+  void probed(const Position& at);
   /// Before the first next(): what the operator has set.
   void set_switches(const OperatorSwitches& switches);
   /// Number of the origin in force of an axis.

@@ -13,7 +13,6 @@ class Collector final : public RunSink, public KnotSink {
   Collector(const Config& config, double reserve) {
     Pipeline::Settings settings;
     settings.axes = config.axis_count;
-    settings.rotary = config.rotary;
     settings.reserve = reserve;
     pipeline = std::make_unique<Pipeline>(settings, *this);
   }

@@ -249,6 +249,7 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
       exact_ratio(device->motor.counts_per_rev, s.first_gear()[0], s.first_gear()[1], 1.0, c.counts_numerator,
                   c.counts_denominator);
   }
+  c.encoder_delay = s.encoder_delay;
   c.count_direction = sign(s.direction);
   c.max_rpm = s.max_speed;
   c.min_rpm = s.min_speed;
@@ -265,11 +266,15 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
   c.index = index;
   c.path.period_s = m.control.cycle_time;
   c.path.reserve = m.control.path_reserve / 100.0;
+  c.path.threads.window = m.control.thread_window;
+  c.path.threads.hold_retracts = m.control.thread_hold_retracts;
+  c.probe = switch_place(m, m.control.probe);
   c.path.axis_count = std::min<int>(static_cast<int>(m.program_axes()), path::kMaxAxes);
   for (int i = 0; i < c.path.axis_count; ++i) {
     const machine::AxisConfig& a = m.axes[static_cast<std::size_t>(i)];
     c.axes.machine.push_back(i);
     c.path.limits[static_cast<std::size_t>(i)] = {a.max_velocity, a.max_acceleration, a.max_jerk};
+    c.path.threads.retract[static_cast<std::size_t>(i)] = a.thread_retract;
     c.path.rotary[static_cast<std::size_t>(i)] = a.type == machine::AxisType::rotary;
     if (a.diameter && (c.axes.surface_speed_axis < 0 || a.process == index + 1))
       c.axes.surface_speed_axis = i;

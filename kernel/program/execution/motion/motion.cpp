@@ -176,6 +176,7 @@ void Motion::tap(int axis, double programmed, double lead) {
   Thread cut;
   cut.to = along(axis, programmed);
   cut.lead = lead;
+  cut.tap = true;
   thread(cut);
 }
 

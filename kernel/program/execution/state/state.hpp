@@ -145,6 +145,22 @@ struct MotionState {
 };
 
 /// Everything of an interpreter that changes while a program runs; a plain value.
+class Execution;
+
+/// What the touches of the block under way are for. The values of a part without any error are in force until
+/// they are there.
+struct ProbingState {
+  void (*take)(Execution& run) = nullptr;  ///< of the language: results from touches; nullptr: none is due
+  std::size_t expected = 0;
+  std::vector<Position> touches;  ///< machine coordinates of the axes, in the order of the probes
+  Position nominal{};             ///< programmed coordinates
+  std::array<int, 3> axes{};      ///< whose results are wanted
+  std::size_t count = 0;
+  int first = 0;  ///< parameter that takes the first result
+  int column = 0;
+  bool deviations = false;
+};
+
 struct State {
   Modes modes;
   Parameters parameters;
@@ -157,6 +173,7 @@ struct State {
   VirtualAxes virtual_axes;
   GeometricElements elements;
   OpenRecords records;
+  ProbingState probing;
   std::array<double, 320> own{};  ///< values that the language keeps for itself, by its own numbers
   std::uint16_t skip_levels = 0;  ///< bit n: blocks with the skip mark n are left out, 0: without a digit
   int optional_stop = -1;         ///< -1: left to the operator's switch

@@ -9,9 +9,9 @@
 #include "kernel/program/languages/nc110/motion/motion.hpp"
 #include "kernel/program/languages/nc110/values/own.hpp"
 
-/// G72, G73, G74: the motions of a measurement as commands. What a probe finds is not known before probing
-/// motion exists: a parameter gets what a part without any error would give. Source: specification A 18,
-/// B 10.
+/// G72, G73, G74: the motions of a measurement as commands, and its results. Where nothing is driven a
+/// parameter has what a part without any error would give. Touches are those of the ball's centre. Source:
+/// specification A 18, B 10.
 namespace servogate::program::nc110 {
 namespace {
 
@@ -35,6 +35,21 @@ void check_block(const Execution& run, const BlockWords& words) {
   for (const Word* word : {words.centre1, words.centre2, words.pitch, words.feed, words.time, words.radius2})
     if (word != nullptr)
       fail(Fault::word_without_function, word->column, {word_text(run.dialect(), run.block(), *word)});
+}
+
+ProbingState& begin(Execution& run, int first, int column, std::size_t touches) {
+  ProbingState& probing = run.state().probing;
+  probing = {};
+  probing.expected = touches;
+  probing.first = first;
+  probing.column = column;
+  return probing;
+}
+
+/// As programs write it: programmed coordinate, diameter, unit.
+double shown(const Execution& run, double programmed, int axis) {
+  return programmed * (run.machine().axes[index(axis)].diameter ? 2.0 : 1.0) /
+         run.numbers().unit_factor(axis);
 }
 
 /// At rapid to the approach point, at the measuring feed beyond the nominal one, at rapid back.
@@ -65,6 +80,33 @@ void store(Execution& run, int parameter, double value, int column) {
   run.depends_on_machine();
 }
 
+void take_axes(Execution& run) {
+  const ProbingState probing = run.state().probing;
+  const Position& touch = probing.touches.front();
+  for (std::size_t i = 0; i < probing.count; ++i) {
+    const int axis = probing.axes[i];
+    const double at = run.state().frames.frame.to_programmed(touch, axis);
+    const double value = probing.deviations ? at - probing.nominal[index(axis)] : at;
+    store(run, probing.first + static_cast<int>(i), shown(run, value, axis), probing.column);
+  }
+}
+
+/// Centre and radius of the circle that the centre of the ball has touched.
+void take_hole(Execution& run) {
+  const ProbingState probing = run.state().probing;
+  const Frame& frame = run.state().frames.frame;
+  const int axis1 = probing.axes[0], axis2 = probing.axes[1];
+  const auto at = [&](std::size_t touch, int axis) {
+    return frame.to_programmed(probing.touches[touch], axis);
+  };
+  const double unit = run.numbers().unit_factor(axis1);
+  store(run, probing.first, 0.5 * (at(0, axis1) + at(1, axis1)) / unit, probing.column);
+  store(run, probing.first + 1, 0.5 * (at(2, axis2) + at(3, axis2)) / unit, probing.column);
+  const double radius =
+      0.25 * (std::abs(at(0, axis1) - at(1, axis1)) + std::abs(at(2, axis2) - at(3, axis2)));
+  store(run, probing.first + 2, radius / unit, probing.column);
+}
+
 /// The axes of the block in the order written.
 int written_axes(const Execution& run, std::array<const Word*, kMostAxes>& axes) {
   const Block& block = run.block();
@@ -89,11 +131,14 @@ void measure_axes(Execution& run, const BlockWords& words, bool deviations) {
   const Position programmed = run.state().frames.programmed;
   run.state().frames.programmed = stands;
   measure(run, nominal);
+  ProbingState& probing = begin(run, first, words.amount->column, 1);
+  probing.take = take_axes;
+  probing.nominal = programmed;
+  probing.deviations = deviations;
   for (int i = 0; i < count; ++i) {
-    const auto axis = index(axes[static_cast<std::size_t>(i)]->axis);
-    const double shown = programmed[axis] * (run.machine().axes[axis].diameter ? 2.0 : 1.0) /
-                         run.numbers().unit_factor(static_cast<int>(axis));
-    store(run, first + i, deviations ? 0.0 : shown, words.amount->column);
+    const int axis = axes[static_cast<std::size_t>(i)]->axis;
+    probing.axes[probing.count++] = axis;
+    store(run, first + i, deviations ? 0.0 : shown(run, programmed[index(axis)], axis), words.amount->column);
   }
 }
 
@@ -135,6 +180,9 @@ void probe_hole(Execution& run, const BlockWords& words) {
       nominal[index(axis)] += sign * radius;
       measure(run, nominal);
     }
+  ProbingState& probing = begin(run, first, words.amount->column, 4);
+  probing.take = take_hole;
+  probing.axes = {frames.axis1, frames.axis2, 0};
   const double unit = run.numbers().unit_factor(frames.axis1);
   store(run, first, frames.programmed[index(frames.axis1)] / unit, words.amount->column);
   store(run, first + 1, frames.programmed[index(frames.axis2)] / unit, words.amount->column);

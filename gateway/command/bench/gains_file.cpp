@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/command/bench/gains_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/canopen/402/objects.hpp"
+#include "firmware_if/canopen/inspect/object_walk.hpp"
+#include "gateway/cli/messages.hpp"
+#include "machine/files/read_file.hpp"
+#include "machine/keys/document.hpp"
+
+namespace servogate::gateway::command {
+namespace {
+
+using bench::LoopGains;
+using canopen::address_text;
+using canopen::SdoOutcome;
+
+const text::Entry kWrong{"bench.gains", "{0}:{1}: {2}", "{0}:{1}: {2}"};
+const text::Entry kSyntax{"bench.gains-syntax", "not TOML: {0}", "не TOML: {0}"};
+const text::Entry kNoGain{"bench.gains-none", "the table [velocity_gain] is missing",
+                          "нет таблицы [velocity_gain]"};
+const text::Entry kForm{
+    "bench.gains-form",
+    "[{0}]: expected object = \"INDEX:SUB\", unit = NUMBER above 0, and inverse = true or not",
+    "[{0}]: нужно object = \"INDEX:SUB\", unit = ЧИСЛО больше 0 и, если надо, inverse = true"};
+const text::Entry kUnread{"bench.gain-unread", "{0} ({1}) of node {2} cannot be read: {3}",
+                          "{0} ({1}) узла {2} не читается: {3}"};
+const text::Entry kUnwritten{"bench.gain-unwritten", "{0} ({1}) of node {2} cannot be written: {3}",
+                             "{0} ({1}) узла {2} не записывается: {3}"};
+const text::Entry kLength{"bench.gain-length", "{0} bytes are no gain", "байтов: {0} — не коэффициент"};
+const text::Entry kRange{"bench.gain-range", "{0} does not fit into the object",
+                         "{0} не помещается в объект"};
+
+struct Known {
+  const char* name;
+  double LoopGains::*gain;
+};
+constexpr Known kGains[] = {{"velocity_gain", &LoopGains::velocity_gain},
+                            {"velocity_integral", &LoopGains::velocity_integral},
+                            {"position_gain", &LoopGains::position_gain}};
+
+std::optional<GainsFile> wrong(const std::string& path, int line, const text::Entry& entry,
+                               const std::vector<std::string>& arguments) {
+  complain(kWrong, {path, std::to_string(line), text::render(entry, arguments, text::user_language())});
+  return std::nullopt;
+}
+
+/// "" : it was read.
+std::string read_one(canopen::SdoAccess& access, canopen::NodeId node, const GainObject& o, LoopGains& gains,
+                     std::size_t& length) {
+  const SdoOutcome outcome = access.read(node, o.at.index, o.at.subindex);
+  if (!outcome.ok()) return outcome.why();
+  length = outcome.data.size();
+  if (length == 0 || length > 8)
+    return text::render(kLength, std::vector<std::string>{std::to_string(length)}, text::user_language());
+  const double value = static_cast<double>(canopen::load_le(outcome.data)) * o.unit;
+  gains.*o.gain = !o.inverse ? value : value > 0.0 ? 1.0 / value : 0.0;
+  return {};
+}
+
+std::string write_one(canopen::SdoAccess& access, canopen::NodeId node, const GainObject& o,
+                      const LoopGains& gains, std::size_t length) {
+  const double gain = gains.*o.gain;
+  const double number = std::round((o.inverse ? 1.0 / gain : gain) / o.unit);
+  if (!(number >= 0.0) || number >= std::ldexp(1.0, static_cast<int>(8 * std::min<std::size_t>(length, 4))))
+    return text::render(kRange, std::vector<std::string>{text::number(gain)}, text::user_language());
+  std::vector<std::uint8_t> bytes(length);
+  canopen::store_le(static_cast<std::uint64_t>(number), bytes);
+  const SdoOutcome outcome = access.write(node, o.at.index, o.at.subindex, bytes);
+  return outcome.ok() ? std::string{} : outcome.why();
+}
+
+}  // namespace
+
+bool GainsFile::has(double LoopGains::*gain) const {
+  return std::any_of(objects.begin(), objects.end(), [&](const GainObject& o) { return o.gain == gain; });
+}
+
+std::optional<GainsFile> read_gains_file(const std::string& path) {
+  std::string why;
+  const auto bytes = files::read_file(path, files::kMostOfSettings, why);
+  if (!bytes) {
+    complain(kCannotRead, {path, why});
+    return std::nullopt;
+  }
+  const machine::Document document = machine::read_document(*bytes);
+  if (!document.ok()) return wrong(path, document.error_at.line, kSyntax, {document.error});
+  using Kind = machine::Element::Kind;
+  GainsFile file{path, {}};
+  for (const Known& known : kGains) {
+    const machine::Element* table = document.root.find(known.name);
+    if (table == nullptr) continue;
+    const machine::Element* object = table->find("object");
+    const machine::Element* unit = table->find("unit");
+    const machine::Element* inverse = table->find("inverse");
+    const auto at = object != nullptr && object->kind == Kind::string ? canopen::parse_address(object->string)
+                                                                      : std::nullopt;
+    const bool good = at && unit != nullptr && unit->numeric() && unit->number() > 0.0 &&
+                      (inverse == nullptr || inverse->kind == Kind::boolean);
+    if (!good) return wrong(path, table->key_at.line, kForm, {known.name});
+    file.objects.push_back(
+        {known.name, *at, unit->number(), inverse != nullptr && inverse->boolean, known.gain});
+  }
+  if (!file.has(&LoopGains::velocity_gain)) return wrong(path, 1, kNoGain, {});
+  return file;
+}
+
+std::optional<LoopGains> read_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file) {
+  LoopGains gains;
+  std::size_t length = 0;
+  for (const GainObject& o : file.objects)
+    if (const std::string why = read_one(access, node, o, gains, length); !why.empty()) {
+      complain(kUnread, {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), why});
+      return std::nullopt;
+    }
+  return gains;
+}
+
+bool write_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file, LoopGains& gains) {
+  for (const GainObject& o : file.objects) {
+    LoopGains now;
+    std::size_t length = 0;
+    std::string why = read_one(access, node, o, now, length);
+    if (why.empty()) why = write_one(access, node, o, gains, length);
+    if (why.empty()) why = read_one(access, node, o, gains, length);
+    if (why.empty()) continue;
+    complain(kUnwritten, {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), why});
+    return false;
+  }
+  return true;
+}
+
+std::string gains_dcf(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file) {
+  std::vector<canopen::ReadObject> objects;
+  for (std::uint8_t sub = 0; sub <= 4; ++sub)
+    objects.push_back(
+        {canopen::object::kIdentity, sub, access.read(node, canopen::object::kIdentity, sub), true});
+  std::erase_if(objects, [](const auto& o) { return !o.outcome.ok(); });
+  for (const GainObject& o : file.objects) {
+    objects.push_back(
+        {o.at.index, o.at.subindex, access.read(node, o.at.index, o.at.subindex), o.at.subindex != 0});
+    if (!objects.back().outcome.ok()) return {};
+  }
+  std::vector<std::string> not_saved;
+  return canopen::write_dcf(canopen::saved_configuration(objects, nullptr, node, 1'000'000, not_saved));
+}
+
+}  // namespace servogate::gateway::command

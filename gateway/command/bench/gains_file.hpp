@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/drive/tuning/loop_tuning.hpp"
+#include "firmware_if/canopen/306/value_text.hpp"
+#include "firmware_if/canopen/inspect/sdo_access.hpp"
+
+/// Where a drive has the gains of its loops, which CiA 402 leaves to its maker. Not real-time safe.
+namespace servogate::gateway::command {
+
+/// One gain: the object that holds it, and what one of it is.
+struct GainObject {
+  std::string name;  ///< "velocity_gain"
+  canopen::ObjectAddress at;
+  double unit = 1.0;
+  bool inverse = false;  ///< it holds the reciprocal: an integral time instead of a rate
+  double bench::LoopGains::*gain = nullptr;
+};
+struct GainsFile {
+  std::string path;
+  std::vector<GainObject>
+      objects;  ///< velocity_gain always, velocity_integral and position_gain where it has them
+  bool has(double bench::LoopGains::*gain) const;
+};
+
+/// Reads a gains file (docs/bench.md). nullopt: it is wrong, which has been said with its line.
+std::optional<GainsFile> read_gains_file(const std::string& path);
+
+/// The gains as the drive has them; nullopt: one cannot be read, which has been said.
+std::optional<bench::LoopGains> read_gains(canopen::SdoAccess& access, canopen::NodeId node,
+                                           const GainsFile& file);
+/// Writes them, as exactly as their units allow, and reads them back into `gains`. False: one was refused,
+/// which has been said.
+bool write_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
+                 bench::LoopGains& gains);
+/// The gains as a DCF that `servogate od --restore` writes back into this device. Empty: they cannot be read.
+std::string gains_dcf(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file);
+
+}  // namespace servogate::gateway::command

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/path/law/master_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace servogate::path {
+namespace {
+
+constexpr double kStands = 0.05;        // revolutions/s: slower is rest
+constexpr double kLeastShare = 0.05;    // of the speed that it was begun with
+constexpr double kUnknownPatience = 5;  // s
+constexpr double kSettles = 0.15;       // s behind the lead-in until the window is watched
+constexpr double kSpindleHears = 1.0;   // cycles besides what a reading takes, until it has its order
+
+double seconds(image::Nanoseconds t) noexcept { return static_cast<double>(t) * 1e-9; }
+
+/// Way from rest to a speed, and the time.
+Profile lead_in(double v, const Box& box) noexcept {
+  Profile profile;
+  profile.start({});
+  add_ramp(profile, 0.0, 0.0, v, box);
+  return profile;
+}
+
+}  // namespace
+
+bool MasterMotion::begin(const Ahead& ahead) noexcept {
+  count_ = 0;
+  length_ = 0.0;
+  double turns = 0.0;
+  for (int n = 0;; ++n) {
+    const Span* span = ahead.span(n);
+    if (span == nullptr || !span->final || n == kMostSpans) return false;
+    const Terms& terms = span->terms;
+    if (n == 0) {
+      lock_ = terms.feed.lock;
+      box_ = terms.box;
+    }
+    box_.acceleration = std::min(box_.acceleration, terms.box.acceleration);
+    box_.jerk = std::min(box_.jerk, terms.box.jerk);
+    Segment& segment = segments_[static_cast<std::size_t>(count_++)];
+    segment = {};
+    segment.begin = length_;
+    segment.turns = turns;
+    segment.per_turn = terms.feed.lock.per_turn;
+    segment.change = terms.feed.lock.change;
+    segment.velocity = terms.box.velocity;
+    segment.length = span->length;
+    turns += turns_to(segment, span->length);
+    length_ += span->length;
+    if (span->stop) break;
+  }
+  last_per_turn_ = 0.0;
+  for (int n = 0; n < count_; ++n) {
+    Segment& g = segments_[static_cast<std::size_t>(n)];
+    const double end = g.per_turn + g.change * turns_to(g, g.length);
+    g.most = std::max({g.per_turn, end, last_per_turn_});
+    if (n + 1 < count_) g.most = std::max(g.most, segments_[static_cast<std::size_t>(n + 1)].per_turn);
+    last_per_turn_ = end;
+  }
+  if (lock_.kind == Lock::Kind::tap_in) {
+    const Span* out = ahead.span(1);
+    if (out == nullptr || !out->final || out->terms.feed.lock.kind != Lock::Kind::tap_out) return false;
+  }
+  state_ = {};
+  phase_ = Phase::waiting;
+  clock_ = waited_s_ = locked_s_ = phase_error_ = overshoot_ = value_ = limit_ = 0.0;
+  fraction_ = -1.0;
+  settled_ = out_ = reverse_ = halt_ = false;
+  fault_ = MasterFault::none;
+  remembered_ = 0;
+  return true;
+}
+
+/// Revolutions from the begin of a segment to `s` along it.
+double MasterMotion::turns_to(const Segment& g, double s) const noexcept {
+  if (g.change == 0.0) return s / std::max(g.per_turn, 1e-9);
+  const double end = std::sqrt(std::max(0.0, g.per_turn * g.per_turn + 2.0 * g.change * s));
+  return (end - g.per_turn) / g.change;
+}
+
+/// Where the angle says the path is, and how it moves.
+MasterMotion::Ideal MasterMotion::ideal(const MasterState& master) const noexcept {
+  const double m = progress(master.n), w = direction_ * master.w, a = direction_ * master.a;
+  int n = 0;
+  while (n + 1 < count_ && segments_[static_cast<std::size_t>(n + 1)].turns <= m) ++n;
+  const Segment& g = segments_[static_cast<std::size_t>(n)];
+  const double u = m - g.turns, per_turn = g.per_turn + g.change * u;
+  Ideal at{{g.begin + u * (g.per_turn + 0.5 * g.change * u), per_turn * w, per_turn * a + g.change * w * w}};
+  for (int k = n; k <= n + 1 && k < count_; ++k) {
+    const Segment& next = segments_[static_cast<std::size_t>(k)];
+    if (next.over <= 0.0) continue;
+    const double z = (m - next.turns) / next.over + 0.5;
+    if (z <= 0.0 || z >= 1.0) continue;
+    // The lead rises as 3 z^2 - 2 z^3; the place is again that of a lead that steps when it is through.
+    const double step = z > 0.5 ? 1.0 : 0.0, slope = 6.0 * z * (1.0 - z) / next.over;
+    const double more = z * z * (3.0 - 2.0 * z) - step;
+    at.motion.s += next.rise * next.over * (z * z * z * (1.0 - 0.5 * z) - step * (z - 0.5));
+    at.motion.v += next.rise * more * w;
+    at.motion.a += next.rise * (slope * w * w + more * a);
+    at.jerk += next.rise * (6.0 - 12.0 * z) / (next.over * next.over) * w * w * w;
+  }
+  return at;
+}
+
+/// Where leads differ one goes over into the other in the time that the limits ask for.
+void MasterMotion::smooth_leads(double w) noexcept {
+  constexpr double kShare = 0.5;  // of acceleration and jerk
+  for (int n = 1; n < count_; ++n) {
+    const Segment& before = segments_[static_cast<std::size_t>(n - 1)];
+    Segment& next = segments_[static_cast<std::size_t>(n)];
+    const double turns = next.turns - before.turns;
+    next.rise = next.per_turn - (before.per_turn + before.change * turns);
+    const double rise = std::abs(next.rise);
+    const double over = std::max(std::sqrt(6.0 * rise * w * w * w / (kShare * box_.jerk)),
+                                 1.5 * rise * w * w / (kShare * box_.acceleration));
+    next.over = std::min({over, turns, turns_to(next, next.length)});
+  }
+}
+
+void MasterMotion::fail(MasterFault fault, double value, double limit) noexcept {
+  if (fault_ != MasterFault::none) return;
+  fault_ = fault;
+  value_ = value;
+  limit_ = limit;
+  give_up();
+}
+
+void MasterMotion::give_up() noexcept {
+  if (phase_ == Phase::waiting) {
+    phase_ = Phase::left;
+  } else if (phase_ == Phase::running_in || phase_ == Phase::locked) {
+    // A tap may be on its way back.
+    const double sign = state_.v < 0.0 ? -1.0 : 1.0;
+    MotionState from{sign * state_.s, sign * state_.v, sign * state_.a};
+    profile_.start(from);
+    add_ramp(profile_, from.v, from.a, 0.0, box_);
+    profile_.finish_at({profile_.end().s, 0.0, 0.0});
+    direction_ = sign;
+    clock_ = 0.0;
+    phase_ = Phase::leaving;
+  }
+}
+
+void MasterMotion::run_profile() noexcept {
+  clock_ += period_;
+  state_ = clock_ < profile_.duration() ? profile_.at(clock_) : profile_.end();
+}
+
+void MasterMotion::try_begin(const MasterEstimate& master, const MasterReading& reading) noexcept {
+  waited_s_ += period_;
+  if (!master.known()) {
+    if (waited_s_ > kUnknownPatience) fail(MasterFault::lost, 0.0, 0.0);
+    return;
+  }
+  const MasterState now = master.at(reading.acts_ns);
+  const double w = std::abs(now.w);
+  if (w < kStands || !reading.ready) {
+    fraction_ = -1.0;
+    return;
+  }
+  direction_ = now.w < 0.0 ? -1.0 : 1.0;
+  const bool taps = lock_.kind == Lock::Kind::tap_in;
+  if (too_fast(w, length_)) return;
+  // The speed at the end of the lead-in depends on its way where the lead changes.
+  const Segment& first = segments_[0];
+  Profile profile = lead_in(first.per_turn * w, box_);
+  for (int round = 0; round < 3 && first.change != 0.0; ++round)
+    profile = lead_in((first.per_turn + first.change * turns_to(first, profile.end().s)) * w, box_);
+  const double way = profile.end().s;
+  const double braking = reading.braking > 0.0 ? first.per_turn * w * w / (2.0 * reading.braking) : 0.0;
+  const double needed = way + (taps ? braking : ramp_distance(last_per_turn_ * w, 0.0, 0.0, box_));
+  if (needed > length_) return fail(MasterFault::too_short, length_, needed);
+  const double begins = turns_to(first, way) - w * profile.duration();
+  start_ = taps ? 0.0 : lock_.start;
+  const double since = direction_ * (now.n - start_) - begins;
+  const double fraction = taps ? 0.0 : since - std::floor(since);
+  // The angle is passed in this cycle when it was not behind in the last one.
+  const bool passes = taps || (fraction_ >= 0.0 && fraction < fraction_ && fraction <= 1.5 * w * period_);
+  fraction_ = fraction;
+  if (!passes) return;
+  smooth_leads(w);
+  whole_ = since - fraction;
+  begun_with_ = w;
+  profile_ = profile;
+  clock_ = std::min(fraction / w, period_) - period_;
+  phase_ = Phase::running_in;
+  run_profile();
+}
+
+std::size_t MasterMotion::segment_at(double s) const noexcept {
+  int n = 0;
+  while (n + 1 < count_ && segments_[static_cast<std::size_t>(n + 1)].begin <= s) ++n;
+  return static_cast<std::size_t>(n);
+}
+
+/// From here to `until` the path has a place that may not be passed as fast as the master turns.
+bool MasterMotion::too_fast(double w, double until) noexcept {
+  const double settles = state_.v + 0.5 * state_.a * std::max(0.0, state_.a) / box_.jerk;
+  for (auto n = static_cast<int>(segment_at(state_.s)); n < count_; ++n) {
+    const Segment& g = segments_[static_cast<std::size_t>(n)];
+    if (g.begin > until) break;
+    const double asked = std::max(g.most * w, settles);
+    if (asked <= g.velocity) continue;
+    fail(MasterFault::too_fast, asked, g.velocity);
+    return true;
+  }
+  return false;
+}
+
+/// As far as it comes before it can rest, with what the cycles to come may add.
+double MasterMotion::reach() const noexcept {
+  constexpr double kCycles = 6.0;
+  return state_.s + ramp_distance(state_.v, state_.a, 0.0, box_) + kCycles * period_ * state_.v;
+}
+
+/// On what may be passed yet.
+double MasterMotion::velocity_allowed() const noexcept {
+  const double until = reach();
+  double least = std::numeric_limits<double>::infinity();
+  for (auto n = static_cast<int>(segment_at(state_.s)); n < count_; ++n) {
+    const Segment& g = segments_[static_cast<std::size_t>(n)];
+    if (g.begin > until) break;
+    least = std::min(least, g.velocity);
+  }
+  return least;
+}
+
+/// The jerk that is wanted, or what of it keeps the limits in this cycle and those to come.
+double MasterMotion::within_limits(double jerk) const noexcept {
+  const double most = velocity_allowed();
+  const double dt = period_, least = lock_.kind == Lock::Kind::thread ? 0.0 : -most;
+  const auto held = [&](double j) {
+    j = std::clamp(j, -box_.jerk, box_.jerk);
+    return std::clamp(j, (-box_.acceleration - state_.a) / dt, (box_.acceleration - state_.a) / dt);
+  };
+  const double j = held(jerk);
+  const double a = state_.a + dt * j, v = state_.v + dt * (state_.a + 0.5 * dt * j);
+  const double settled = v + 0.5 * a * std::abs(a) / box_.jerk;
+  if (a > 0.0 && settled > most) return held(-box_.jerk);
+  if (a < 0.0 && settled < least) return held(box_.jerk);
+  return j;
+}
+
+/// What the readings say of the motion, while it goes by them.
+void MasterMotion::watch(const MasterEstimate& master, const MasterReading& reading) noexcept {
+  if (!master.known()) return fail(MasterFault::lost, 0.0, 0.0);
+  const double w = direction_ * master.at(reading.acts_ns).w;
+  const bool turns_round = reverse_ || halt_ || out_;
+  if (!turns_round && w < kLeastShare * begun_with_)
+    return fail(MasterFault::reversed, w, kLeastShare * begun_with_);
+  if (lock_.kind == Lock::Kind::thread && phase_ == Phase::locked && too_fast(w, reach())) return;
+  if (!master.fresh()) return;
+  const double ago = seconds(newest_ns_ - master.read_at()) / period_;
+  if (ago < 0.0 || ago + 1.0 > remembered_ - 1) return;
+  const int whole = static_cast<int>(ago);
+  const auto place = [&](int cycles) {
+    return history_[static_cast<std::size_t>((head_ - cycles + 2 * kHistory) % kHistory)];
+  };
+  const double z = ago - whole, then = (1.0 - z) * place(whole) + z * place(whole + 1);
+  phase_error_ = then - ideal({master.read(), 0.0, 0.0}).motion.s;
+  if (phase_ != Phase::locked) return;
+  if (locked_s_ > kSettles + ago * period_) settled_ = true;
+  if (settled_ && std::abs(phase_error_) > window_)
+    fail(MasterFault::window, std::abs(phase_error_), window_);
+}
+
+/// A tap reverses its spindle so that it stands at the depth, and goes where that takes it.
+void MasterMotion::tap(const MasterState& now, const MasterReading& reading) noexcept {
+  if (out_) return;
+  overshoot_ = std::max(overshoot_, state_.s - length_);
+  const double w = direction_ * now.w, per_turn = segments_[0].per_turn;
+  const double hears = seconds(reading.acts_ns - reading.at_ns) + kSpindleHears * period_;
+  const double stops = reading.braking > 0.0 ? w * (0.5 * w / reading.braking + hears)
+                                             : std::numeric_limits<double>::infinity();
+  if (!halt_ && (length_ - state_.s) / per_turn <= stops) reverse_ = true;
+  if (reverse_ && !halt_ && w < 0.0 && state_.v < 0.0) turn_back();
+}
+
+/// From here on the way out counts.
+void MasterMotion::turn_back() noexcept {
+  state_ = {length_ - state_.s, -state_.v, -state_.a};
+  whole_ = -whole_ - length_ / segments_[0].per_turn;
+  direction_ = -direction_;
+  remembered_ = 0;
+  out_ = true;
+}
+
+void MasterMotion::remember(image::Nanoseconds acts_ns) noexcept {
+  head_ = (head_ + 1) % kHistory;
+  history_[static_cast<std::size_t>(head_)] = state_.s;
+  remembered_ = std::min(remembered_ + 1, kHistory);
+  newest_ns_ = acts_ns;
+}
+
+void MasterMotion::follow(const MasterEstimate& master, const MasterReading& reading) noexcept {
+  const auto period = static_cast<image::Nanoseconds>(std::llround(period_ * 1e9));
+  const Ideal there = ideal(master.at(reading.acts_ns - period));
+  const MotionState& wanted = there.motion;
+  const double j = within_limits(
+      there.jerk + settling_jerk(wanted.s - state_.s, wanted.v - state_.v, wanted.a - state_.a));
+  const double dt = period_;
+  const MotionState next{state_.s + dt * (state_.v + dt * (0.5 * state_.a + dt * j / 6.0)),
+                         state_.v + dt * (state_.a + 0.5 * dt * j), state_.a + dt * j};
+  locked_s_ += dt;
+  const bool brakes = (lock_.kind == Lock::Kind::thread || out_) && next.v > 0.0;
+  if (brakes && next.s + ramp_distance(next.v, next.a, 0.0, box_) > length_) {
+    Goal goal;
+    goal.length = length_ - state_.s;
+    goal.velocity = std::clamp(state_.v + 0.5 * state_.a * std::abs(state_.a) / box_.jerk, 1e-6,
+                               std::max(1e-6, segments_[static_cast<std::size_t>(count_ - 1)].velocity));
+    if (!plan(profile_, state_, goal, box_)) {
+      profile_.start(state_);
+      add_ramp(profile_, state_.v, state_.a, 0.0, box_);
+    }
+    profile_.finish_at({length_, 0.0, 0.0});
+    clock_ = 0.0;
+    phase_ = Phase::braking;
+    return run_profile();
+  }
+  state_ = next;
+  if (lock_.kind == Lock::Kind::thread) return;
+  const MasterState now = master.at(reading.acts_ns);
+  tap(now, reading);
+  if (halt_ && std::abs(now.w) < kStands) give_up();
+}
+
+void MasterMotion::step(const MasterEstimate& master, const MasterReading& reading, bool wait,
+                        bool leave) noexcept {
+  if (leave && (lock_.kind == Lock::Kind::thread || phase_ == Phase::waiting)) give_up();
+  if (leave && phase_ == Phase::locked) halt_ = true;
+  if (phase_ == Phase::running_in || phase_ == Phase::locked) watch(master, reading);
+  switch (phase_) {
+    case Phase::waiting:
+      if (!wait) try_begin(master, reading);
+      break;
+    case Phase::running_in:
+      run_profile();
+      if (clock_ >= profile_.duration()) {
+        phase_ = Phase::locked;
+        // The end of the lead-in lies within this cycle.
+        const double beyond = clock_ - profile_.duration();
+        state_.s += beyond * state_.v;
+      }
+      break;
+    case Phase::locked:
+      follow(master, reading);
+      break;
+    case Phase::braking:
+      run_profile();
+      if (clock_ >= profile_.duration()) phase_ = Phase::arrived;
+      break;
+    case Phase::leaving: {
+      clock_ += period_;
+      const MotionState at = clock_ < profile_.duration() ? profile_.at(clock_) : profile_.end();
+      state_ = {direction_ * at.s, direction_ * at.v, direction_ * at.a};
+      if (clock_ >= profile_.duration()) phase_ = Phase::left;
+      break;
+    }
+    case Phase::left:
+    case Phase::arrived:
+      state_.v = state_.a = 0.0;
+      break;
+  }
+  if (phase_ != Phase::waiting) remember(reading.acts_ns);
+}
+
+}  // namespace servogate::path

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "kernel/path/law/master.hpp"
+#include "kernel/path/law/s_curve.hpp"
+#include "kernel/path/law/span.hpp"
+
+namespace servogate::path {
+
+/// Why a motion by the spindle's angle was left, or did not begin.
+enum class MasterFault : std::uint8_t {
+  none,
+  lost,       ///< no reading, or no zero mark
+  reversed,   ///< it stood or turned back; value: revolutions/s, limit: the least
+  window,     ///< value: mm off the master, limit: Threads::window
+  too_fast,   ///< value: mm/s that its speed asks for, limit: what the axes allow
+  too_short,  ///< value: mm of path, limit: what speeding up and braking need
+};
+
+/// The law inside the cycle for a run by the spindle's angle, from rest to rest: it is run in so that the
+/// path is where the angle says from its lead-in on whatever the speed, then locked to the angle, and braked
+/// into the end. Limits of path speed, acceleration and jerk are those of the run's tightest span and hold
+/// whatever the master does. All functions but the constructor are real-time safe.
+class MasterMotion {
+ public:
+  static constexpr int kMostSpans = 64;
+  explicit MasterMotion(const Config& config) : period_(config.period_s), window_(config.threads.window) {}
+
+  /// Takes up the run that begins with the first span, at rest. False: its end is not known yet.
+  bool begin(const Ahead& ahead) noexcept;
+  /// One cycle. `wait`: it does not begin. `leave`: it is given up: a thread slows down at once, a tap when
+  /// the spindle stands.
+  void step(const MasterEstimate& master, const MasterReading& reading, bool wait, bool leave) noexcept;
+
+  /// Over the run; of a tap over the way in or the way out.
+  const MotionState& state() const noexcept { return state_; }
+  /// Tightest box of the run. What of it the path still needs when it slows down.
+  const Box& box() const noexcept { return box_; }
+  bool at_rest() const noexcept { return state_.v == 0.0 && state_.a == 0.0; }
+  /// At rest in the end of the run.
+  bool arrived() const noexcept { return phase_ == Phase::arrived; }
+  /// Given up, and at rest or slowing down.
+  bool leaving() const noexcept { return phase_ == Phase::leaving || phase_ == Phase::left; }
+  bool left() const noexcept { return phase_ == Phase::left; }
+  /// Locked to the angle, behind its lead-in.
+  bool locked() const noexcept { return phase_ == Phase::locked && settled_; }
+  /// The way out of a tap has begun.
+  bool out() const noexcept { return out_; }
+  MasterFault fault() const noexcept { return fault_; }
+  double value() const noexcept { return value_; }
+  double limit() const noexcept { return limit_; }
+  /// mm of path by which the set-point was off the measured angle of the same time, at the newest reading.
+  double phase_error() const noexcept { return phase_error_; }
+  /// A tap asks for the spindle's reversal, or for its stop.
+  bool wants_reverse() const noexcept { return reverse_; }
+  bool wants_halt() const noexcept { return halt_; }
+  /// mm by which a tap went beyond its depth.
+  double overshoot() const noexcept { return overshoot_; }
+
+ private:
+  enum class Phase : std::uint8_t { waiting, running_in, locked, braking, leaving, left, arrived };
+  struct Segment {
+    double begin = 0.0, turns = 0.0;  ///< of its begin, along the run
+    double per_turn = 0.0, change = 0.0, velocity = 0.0;
+    double most = 0.0;  ///< mm of path in a revolution on it, those of its neighbours at their ends included
+    double length = 0.0;
+    double rise = 0.0, over = 0.0;  ///< of the lead at its begin, and revolutions that takes
+  };
+
+  double progress(double n) const noexcept { return direction_ * (n - start_) - whole_; }
+  struct Ideal {
+    MotionState motion;
+    double jerk = 0.0;
+  };
+  Ideal ideal(const MasterState& master) const noexcept;
+  void smooth_leads(double w) noexcept;
+  double turns_to(const Segment& segment, double s) const noexcept;
+  void try_begin(const MasterEstimate& master, const MasterReading& reading) noexcept;
+  void follow(const MasterEstimate& master, const MasterReading& reading) noexcept;
+  void watch(const MasterEstimate& master, const MasterReading& reading) noexcept;
+  void tap(const MasterState& now, const MasterReading& reading) noexcept;
+  void turn_back() noexcept;
+  std::size_t segment_at(double s) const noexcept;
+  bool too_fast(double w, double until) noexcept;
+  double reach() const noexcept;
+  double velocity_allowed() const noexcept;
+  double within_limits(double jerk) const noexcept;
+  void give_up() noexcept;
+  void fail(MasterFault fault, double value, double limit) noexcept;
+  void run_profile() noexcept;
+  void remember(image::Nanoseconds acts_ns) noexcept;
+
+  static constexpr int kHistory = 256;
+  double period_, window_;
+  std::array<Segment, kMostSpans> segments_{};
+  int count_ = 0;
+  double length_ = 0.0, last_per_turn_ = 0.0;
+  Box box_;
+  Lock lock_;
+  MotionState state_;
+  Phase phase_ = Phase::waiting;
+  Profile profile_;
+  double clock_ = 0.0, waited_s_ = 0.0, locked_s_ = 0.0;
+  double direction_ = 1.0, start_ = 0.0, whole_ = 0.0;
+  double begun_with_ = 0.0;  ///< revolutions/s
+  double fraction_ = -1.0;   ///< of a revolution behind the begin, one cycle ago
+  bool settled_ = false, out_ = false, reverse_ = false, halt_ = false;
+  MasterFault fault_ = MasterFault::none;
+  double value_ = 0.0, limit_ = 0.0, phase_error_ = 0.0, overshoot_ = 0.0;
+  std::array<double, kHistory> history_{};  ///< places, one a cycle
+  int head_ = 0, remembered_ = 0;
+  image::Nanoseconds newest_ns_ = 0;
+};
+
+}  // namespace servogate::path

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Programs whose path goes with the measured spindle, and programs that probe.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "kernel/channel/alarms/master_alarms.hpp"
+#include "tests/channel/rig.hpp"
+
+namespace servogate::channel::test {
+namespace {
+
+using image::ProcessState;
+using image::RequestKind;
+
+/// Watches Z against the true revolutions of the spindle: a set-point acts two cycles before the encoder's
+/// reading of the same time is there.
+struct Watched : Rig {
+  Watched(std::string_view program, double lead_mm, double begins_at = 0.0)
+      : Rig(program), lead(lead_mm), begins(begins_at) {
+    each = [this] {
+      z_ = {x(2), z_[0], z_[1]};
+      const double speed = (z_[1] - z_[2]) * 1000.0, wanted = -lead * image().spindles[0].actual_rpm / 60.0;
+      if (!(std::abs(speed - wanted) < 0.01 * std::abs(wanted)) || wanted == 0.0) {
+        steady_ = 0;
+        return;
+      }
+      if (++steady_ < 300) return;
+      const double off = -z_[2] / lead - drives.turns + begins;
+      worst = std::max(worst, std::abs(off - std::round(off)) * lead);
+      ++seen;
+    };
+  }
+  double lead, begins, worst = 0.0;
+  int seen = 0;
+
+ private:
+  std::array<double, 3> z_{};
+  int steady_ = 0;
+};
+
+TEST(ThreadProgram, is_cut_at_the_measured_angle_and_ends_where_it_is_programmed) {
+  Watched rig("S600 M3\nG33 Z-60 K1.5\nG0 X4\nG0 Z0\nM30\n", 1.5);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  std::printf("thread of a program: %.3f um off the true angle, %d cycles\n", rig.worst * 1e3, rig.seen);
+  EXPECT_GT(rig.seen, 1000);
+  EXPECT_LE(rig.worst, 0.010);
+  double deepest = 0.0;
+  for (const std::array<double, kAxes>& at : rig.path) deepest = std::min(deepest, at[2]);
+  EXPECT_NEAR(deepest, -60.0, 1e-6);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, has_its_second_start_half_a_revolution_behind_the_first) {
+  Watched rig("S600 M3\nG33 Z-40 K2 R180\nM30\n", 2.0, 0.5);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_GT(rig.seen, 300);
+  EXPECT_LE(rig.worst, 0.010);
+}
+
+TEST(ThreadProgram, takes_no_notice_of_the_feed_override_and_of_a_spindle_under_load) {
+  Watched rig("S600 M3\nG33 Z-60 K1.5\nM30\n", 1.5);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+  rig.ask(RequestKind::override_feed, 0.2);
+  rig.drives.slip = 0.1;
+  rig.run(0.8);
+  const double while_slowing = std::exchange(rig.worst, 0.0);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  const double bound = path::phase_bound({0.001, 0.002, 4096.0, 1.0, 20.0}, 1.5);
+  std::printf("under load: %.2f um off while the spindle slows down, bound %.2f um\n", while_slowing * 1e3,
+              bound * 1e3);
+  EXPECT_LE(while_slowing, bound);
+  EXPECT_LE(rig.worst, 0.010) << "at a tenth less, the lead is the same";
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, that_is_held_ends_its_pass_and_goes_on_behind_it) {
+  Rig rig("S600 M3\nG33 Z-40 K1.5\nG0 X4\nM30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+  EXPECT_EQ(rig.ask(RequestKind::hold), cycle::Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held && !rig.moving(); }));
+  EXPECT_NEAR(rig.x(2), -40.0, 1e-6);
+  EXPECT_EQ(rig.x(0), 0.0);
+  EXPECT_EQ(rig.ask(RequestKind::resume), cycle::Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(0), 4.0, 1e-6);
+}
+
+TEST(ThreadProgram, that_is_held_leaves_the_part_with_an_alarm_where_that_is_declared) {
+  Rig rig("S600 M3\nG33 Z-60 K1.5\nM30\n", "G27", 0.5, RigKind::retracting);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+  EXPECT_EQ(rig.ask(RequestKind::hold), cycle::Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kThreadHeld), 1) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(0), 2.0, 1e-6);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, on_a_spindle_without_an_encoder_is_an_alarm_and_moves_nothing) {
+  Rig rig("S600 M3\nG33 Z-60 K1.5\nM30\n", "G27", 0.5, RigKind::blind);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }));
+  EXPECT_EQ(rig.alarms(alarm::kThreadNoEncoder), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.x(2), 0.0);
+}
+
+TEST(ThreadProgram, whose_spindle_is_not_read_any_more_leaves_the_part_with_an_alarm) {
+  Rig rig("S600 M3\nG33 Z-60 K1.5\nM30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+  rig.drives.spindle_silent = true;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kThreadMasterLost), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.alarm(alarm::kThreadMasterLost)->line, 2);
+  EXPECT_NEAR(rig.x(0), 2.0, 1e-6) << "off the part as declared";
+  EXPECT_GT(rig.x(2), -15.0);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, whose_spindle_is_stopped_leaves_the_part_with_an_alarm) {
+  Rig rig("S600 M3\nG33 Z-60 K1.5\nM30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+  rig.logic.spindle_enable = false;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kThreadMasterTurned) + rig.alarms(alarm::kThreadWindow), 1) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(0), 2.0, 1e-6);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, that_is_too_short_or_too_fast_does_not_begin) {
+  for (const bool fast : {true, false}) {
+    Rig rig(fast ? "S4000 M3\nG33 Z-100 K9\nM30\n" : "S600 M3\nG33 Z-0.5 K6\nM30\n");
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; })) << fast;
+    EXPECT_EQ(rig.alarms(fast ? alarm::kThreadTooFast : alarm::kThreadTooShort), 1) << rig.alarm_list();
+    EXPECT_EQ(rig.x(2), 0.0);
+  }
+}
+
+TEST(TapProgram, goes_to_its_depth_with_the_spindle_and_back_and_the_spindle_turns_as_before) {
+  Watched rig("S500 M3\nG0 Z5\nG84 R2 Z-15 K1.5\nX10\nG80\nM30\n", 1.5);
+  double deepest = 1e9;
+  bool reversed = false;
+  const auto watch = rig.each;
+  rig.each = [&] {
+    watch();
+    deepest = std::min(deepest, rig.x(2));
+    reversed = reversed || (rig.image().spindles[0].command_rpm < -400.0 && rig.x(2) < -1.0);
+  };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  std::printf("tap of a program: deepest %.4f mm, overshoot said %.4f mm\n", deepest,
+              rig.process->tap_overshoot());
+  EXPECT_TRUE(reversed) << "on the way out";
+  EXPECT_NEAR(deepest, -15.0, 0.75);
+  EXPECT_NEAR(std::max(0.0, -15.0 - deepest), rig.process->tap_overshoot(), 1e-6);
+  EXPECT_NEAR(rig.x(0), 10.0, 1e-6);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(SpindleMark, lets_the_motion_begin_when_the_spindle_passes_its_zero_mark) {
+  Rig rig("S60 M3\nG1 X1 F100\nG29\nG1 G35 X5 F1000\nM30\n");
+  double began = -1.0;
+  rig.each = [&] {
+    if (began < 0.0 && rig.x(0) > 1.0 + 1e-9) began = rig.drives.turns - std::floor(rig.drives.turns);
+  };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_LT(std::min(began, 1.0 - began), 0.01);
+}
+
+/// Text of the last message.
+std::string message(const Rig& rig) {
+  return rig.process->texts().message(rig.status().message).value_or("");
+}
+
+constexpr std::string_view kTouch = "(DPT,10,12,600)\nG72 Z-50 E30\n(DIS,E30)\nG0 X7\nM30\n";
+
+TEST(ProbeProgram, knows_where_it_touched_to_a_tenth_of_the_way_of_a_cycle) {
+  for (const double surface : {-48.1234, -50.00037, -51.777}) {
+    Rig rig(kTouch);
+    rig.drives.surface_at(surface);
+    double deepest = 0.0;
+    rig.each = [&] { deepest = std::min(deepest, rig.x(2)); };
+    ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+    const double said = std::strtod(message(rig).substr(message(rig).find('=') + 1).c_str(), nullptr);
+    std::printf("touch at %.5f mm, said %.5f mm, stopped at %.4f mm\n", surface, said, deepest);
+    EXPECT_NEAR(said, surface, 0.1 * 10.0 * 0.001) << message(rig);
+    EXPECT_GT(deepest, surface - 0.5) << "the rest of the way is dropped";
+    EXPECT_NEAR(rig.x(2), 0.0, 1e-6) << "and back at rapid";
+    EXPECT_NEAR(rig.x(0), 7.0, 1e-6) << "the program goes on";
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
+TEST(ProbeProgram, of_an_input_without_times_is_known_to_the_way_of_a_cycle) {
+  Rig rig(kTouch);
+  rig.drives.surface_at(-49.3217);
+  rig.drives.edges = false;
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  const double said = std::strtod(message(rig).substr(message(rig).find('=') + 1).c_str(), nullptr);
+  EXPECT_NEAR(said, -49.3217, 10.0 * 0.001 + 1e-6);
+}
+
+TEST(ProbeProgram, finds_centre_and_radius_of_a_hole_by_four_touches) {
+  Rig rig("(DPT,5,6,600)\nG0 X20 Y-10\nG73 r30 E40\n(DIS,E40,E41,E42)\nM30\n");
+  rig.drives.clearance = [](const std::array<double, kAxes>& at) {
+    return 30.5 - std::hypot(at[0] - 20.25, at[1] + 9.5);
+  };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  double x = 0.0, y = 0.0, r = 0.0;
+  ASSERT_EQ(std::sscanf(message(rig).c_str(), "E40=%lf E41=%lf E42=%lf", &x, &y, &r), 3) << message(rig);
+  EXPECT_NEAR(x, 20.25, 0.002);
+  EXPECT_NEAR(y, -9.5, 0.002);
+  EXPECT_NEAR(r, 30.5, 0.01) << "of chords half a millimetre beside the centre";
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ProbeProgram, gives_what_a_surface_is_off) {
+  Rig rig("(DPT,5,6,600)\nG74 Z-50 E40\n(DIS,E40)\nM30\n");
+  rig.drives.surface_at(-51.25);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_NEAR(std::strtod(message(rig).substr(4).c_str(), nullptr), -1.25, 0.001) << message(rig);
+}
+
+TEST(ProbeProgram, stops_with_an_alarm_where_it_touches_nothing) {
+  Rig rig(kTouch);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }));
+  EXPECT_EQ(rig.alarms(alarm::kProbeMissed), 1) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(2), -62.0, 1e-6);
+  EXPECT_EQ(rig.alarm(alarm::kProbeMissed)->line, 2);
+}
+
+TEST(ProbeProgram, on_a_machine_without_a_probe_is_an_alarm) {
+  Rig rig(kTouch, "G27", 0.5, RigKind::blind);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }));
+  EXPECT_EQ(rig.alarms(alarm::kProbeNone), 1) << rig.alarm_list();
+}
+
+TEST(ProbeProgram, does_not_move_with_a_probe_that_is_deflected_before) {
+  Rig rig("(DPT,60,12,600)\nG72 Z-50 E30\nM30\n");
+  rig.drives.surface_at(1.0);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }));
+  EXPECT_EQ(rig.alarms(alarm::kProbeStuck), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.x(2), 0.0);
+}
+
+TEST(ProbeProgram, that_touches_in_a_rapid_stops_with_an_alarm) {
+  Rig rig(kTouch);
+  rig.drives.surface_at(-20.0);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kProbeInRapid), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.violations(), "");
+}
+
+}  // namespace
+}  // namespace servogate::channel::test
