@@ -4,10 +4,12 @@
 #include <exception>
 #include <string_view>
 
+#include "gateway/cli/bench_options.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
 #include "gateway/command/commands.hpp"
+#include "gateway/command/latency/latency.hpp"
 #include "gateway/command/plc/commands.hpp"
 #include "gateway/command/signals.hpp"
 #include "gateway/control/compose/plc/compile_beside.hpp"
@@ -54,6 +56,7 @@ int carry_out(const CommandLine& line) {
   if (line.command == "modbus read") return command::modbus_read(line.bus.modbus_read);
   if (line.command == "modbus write") return command::modbus_write(line.bus.modbus_write);
   if (line.command == "modbus scan") return command::modbus_scan(line.bus.modbus_scan);
+  if (line.command == "latency") return command::latency(line.bench->latency);
   if (line.command.starts_with("bench ")) return command::bench(line.command.substr(6), *line.bench);
   if (line.command == "pendant list") return command::pendant_list(line.bus.pendant_list);
   if (line.command == "pendant watch") return command::pendant_watch(line.bus.pendant_watch);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gateway/cli/bus_options.hpp"
+#include "gateway/cli/latency_options.hpp"
 
 namespace servogate::gateway {
 
@@ -56,9 +57,20 @@ struct BenchCompareOptions {
   bool json = false;
 };
 
+/// `servogate bench positioning` and `bench circle`: figures of ISO 230.
+struct BenchIsoOptions {
+  std::vector<std::string> files;  ///< CSV
+  std::string columns = "x,y";     ///< of circle
+  double radius = 0.0;             ///< of circle, nominal
+  std::string out;                 ///< page; empty: none
+  bool json = false;
+};
+
 struct BenchCommands {
   BenchOptions run, identify, move, jog, record, response, tune;
   BenchCompareOptions compare;
+  BenchIsoOptions positioning, circle;
+  LatencyOptions latency;  ///< `servogate latency`, a command of its own
 };
 
 }  // namespace servogate::gateway

@@ -94,6 +94,8 @@ TEST(Guard, a_fault_a_silent_drive_the_operator_and_the_time_end_a_run) {
   };
   EXPECT_EQ(trip_of([](PlantOnBench& d) { d.faulted = true; }), Trip::fault);
   EXPECT_EQ(trip_of([](PlantOnBench& d) { d.online = false; }), Trip::offline);
+  EXPECT_EQ(trip_of([](PlantOnBench& d) { d.drops = true; }), Trip::not_enabled)
+      << "it left Operation enabled";
   EXPECT_EQ(trip_of([](PlantOnBench& d) { d.ends = true; }), Trip::ended);
   EXPECT_EQ(trip_of([](PlantOnBench& d) { d.gone = true; }), Trip::gone);
   EXPECT_EQ(trip_of([](PlantOnBench&) {}), Trip::time);

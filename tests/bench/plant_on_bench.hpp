@@ -25,7 +25,7 @@ class PlantOnBench final : public BenchDrive {
     measured_.time_s = clock_s;
     clock_s += 1e-3;
     measured_.faulted = faulted;
-    measured_.enabled = acting_.power && !faulted;
+    measured_.enabled = acting_.power && !faulted && !drops;
     measured_.position_rad =
         static_cast<double>(plant_.state().position - start_) / turn * 2.0 * std::numbers::pi;
     measured_.torque_nm = plant_.state().torque * config_.rated_torque_nm / 1000.0;
@@ -52,7 +52,7 @@ class PlantOnBench final : public BenchDrive {
   }
   const mock::Plant& plant() const { return plant_; }
 
-  bool ends = false, gone = false, online = true, faulted = false;
+  bool ends = false, gone = false, online = true, faulted = false, drops = false;
   DriveAsk asked;
   double clock_s = 0.0;  ///< by which the answers are measured
 

@@ -236,6 +236,28 @@ TEST_F(Lockstep, kept_runs_are_opened_again_and_laid_over_one_another) {
 
 class Bench : public Workbench {};
 
+TEST_F(Bench, figures_of_positioning_and_circles_come_from_any_csv) {
+  desk_.write("approaches.csv",
+              "target,direction,actual\n0,1,1\n0,1,3\n0,-1,-1\n0,-1,-3\n100,1,104\n100,1,106\n100,-1,"
+              "102\n100,-1,104\n");
+  const json p = facts("bench positioning approaches.csv --out page.html")["figures"];
+  EXPECT_NEAR(p["B"], 4.0, 1e-9);
+  EXPECT_NEAR(p["E"], 7.0, 1e-9);
+  EXPECT_TRUE(desk_.has("page.html"));
+  std::string path = "time,px,py\n";
+  for (int i = 0; i < 360; ++i) {
+    const double a = i * std::numbers::pi / 180.0;
+    path += std::to_string(i) + "," + std::to_string(5.0 + 50.0 * std::cos(a)) + "," +
+            std::to_string(50.02 * std::sin(a)) + "\n";
+  }
+  desk_.write("path.csv", path);
+  const json c = facts("bench circle path.csv path.csv --radius 50 --columns px,py")["figures"];
+  EXPECT_NEAR(c["G_1"], 0.02, 1e-3);
+  EXPECT_NEAR(c["H"], 0.0, 1e-6) << "both directions are one";
+  EXPECT_EQ(tool("bench circle path.csv --radius 50").code, 2) << "there is no column x";
+  EXPECT_EQ(tool("bench positioning path.csv").code, 2);
+}
+
 TEST_F(Bench, gains_that_a_master_changed_are_restored_from_their_dcf) {
   drives("5");
   ASSERT_EQ(tool("od $BUS 5 --range 60F9-60FB --save before.dcf").code, 0);

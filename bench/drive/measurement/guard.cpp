@@ -101,6 +101,7 @@ bool Guard::look_at_answer() {
   if (answer_.faulted) return fail(Trip::fault, answer_.error_code);
   if (offline_cycles_ > kOfflineCycles) return fail(Trip::offline);
   if (!answer_.online) return true;
+  if (powered_ && !answer_.enabled) return fail(Trip::not_enabled, answer_.statusword);
   const double speed = even_speed();
   // Where it will be in two cycles: one is lost on the bus in each direction.
   const double soon = answer_.position_rad + 2.0 * period_ * speed;

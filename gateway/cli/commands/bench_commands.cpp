@@ -264,12 +264,67 @@ void add_tune(CLI::App& bench, BenchOptions& o) {
       "--torque 2 --out tune1 --i-may-move");
 }
 
+void add_positioning(CLI::App& bench, BenchIsoOptions& o) {
+  CLI::App& c = *bench.add_subcommand("positioning", "Figures of ISO 230-2 of measured approaches.");
+  c.add_option("FILE", o.files, "CSV with the columns target, actual and direction (1 or -1)")
+      ->required()
+      ->expected(1);
+  c.add_option("--out", o.out, "Page with their courses over one another")->type_name("FILE");
+  c.add_flag("--json", o.json, "As JSON");
+  c.footer("Example: servogate bench positioning approaches.csv");
+}
+
+void add_circle(CLI::App& bench, BenchIsoOptions& o) {
+  CLI::App& c =
+      *bench.add_subcommand("circle", "Figures of ISO 230-4 of the measured circular path of two axes.");
+  c.add_option("FILE", o.files, "CSV with the path, and a second one with that of the other direction")
+      ->required()
+      ->expected(1, 2);
+  c.add_option("--radius", o.radius, "Nominal radius, in the unit of the path")
+      ->required()
+      ->type_name("R")
+      ->check(number_within({1e-9, 1e9, ""}));
+  c.add_option("--columns", o.columns, "Heads of the columns of both axes (default x,y)")->type_name("X,Y");
+  c.add_option("--out", o.out, "Page with their courses over one another")->type_name("FILE");
+  c.add_flag("--json", o.json, "As JSON");
+  c.footer("Example: servogate bench circle there.csv back.csv --radius 50");
+}
+
 void add_compare(CLI::App& bench, BenchCompareOptions& o) {
   CLI::App& c = *bench.add_subcommand("compare", "Shows the figures of kept runs beside one another.");
   c.add_option("RUN", o.runs, "Directories of runs")->required()->expected(2, 6);
   c.add_option("--out", o.out, "Page with their courses over one another")->type_name("FILE");
   c.add_flag("--json", o.json, "As JSON");
   c.footer("Example: servogate bench compare step1 step2 --out steps.html");
+}
+
+void add_latency(CLI::App& app, LatencyOptions& o) {
+  CLI::App& c = *app.add_subcommand(
+      "latency", "Measures how exactly this computer keeps a cycle, and says what would make it better.");
+  c.add_option("BUS", o.bus, "Url of a bus whose SYNC is measured, too");
+  c.add_option("NODE", o.node, "Drive on it that answers with process data; it gets no power")
+      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+  c.add_option("--cycle", o.cycle_us, "Cycle in us, 100 to 20000")
+      ->type_name("US")
+      ->check(number_within({100.0, 20'000.0, text::both("us", "мкс"), true}));
+  c.add_option("--seconds", o.seconds, "How long it measures, 0.1 to 86400")
+      ->type_name("S")
+      ->check(number_within({0.1, 86'400.0, text::both("s", "с")}));
+  c.add_flag("--load", o.load, "Keeps every processor busy meanwhile");
+  c.add_option("--priority", o.priority, "SCHED_FIFO priority of the cycle, 1 to 99")
+      ->type_name("N")
+      ->check(number_within({1.0, 99.0, "", true}));
+  c.add_option("--cpu", o.cpu, "Processor to which the cycle keeps")
+      ->type_name("N")
+      ->check(number_within({0.0, 4095.0, "", true}));
+  c.add_option("--bit-rate", o.bit_rate, "Bit rate of the bus in bit/s, 10000 to 1000000")
+      ->type_name("BIT/S")
+      ->check(number_within({10'000.0, 1e6, text::both("bit/s", "бит/с"), true}));
+  c.add_option("--listen", o.listen_s, "How long the bus must show no master before, in s, 0.1 to 60")
+      ->type_name("S")
+      ->check(number_within({0.1, 60.0, text::both("s", "с")}));
+  c.add_flag("--json", o.json, "As JSON");
+  c.footer("Example: servogate latency --seconds 60 --load");
 }
 
 }  // namespace
@@ -285,6 +340,9 @@ void add_bench_commands(CLI::App& app, BenchCommands& options) {
   add_tune(bench, options.tune);
   add_record(bench, options.record);
   add_compare(bench, options.compare);
+  add_latency(app, options.latency);
+  add_positioning(bench, options.positioning);
+  add_circle(bench, options.circle);
 }
 
 }  // namespace servogate::gateway

@@ -12,6 +12,8 @@ int bench(const std::string& name, const BenchCommands& options) {
   if (name == "response") return bench_response(options.response);
   if (name == "identify") return bench_identify(options.identify);
   if (name == "tune") return bench_tune(options.tune);
+  if (name == "positioning") return bench_positioning(options.positioning);
+  if (name == "circle") return bench_circle(options.circle);
   if (name == "compare") return bench_compare(options.compare);
   if (name == "record") return bench_record(options.record);
   return bench_run(options.run);

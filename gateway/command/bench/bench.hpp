@@ -14,6 +14,8 @@ int bench_response(const BenchOptions& options);
 int bench_identify(const BenchOptions& options);
 int bench_tune(const BenchOptions& options);
 int bench_record(const BenchOptions& options);
+int bench_positioning(const BenchIsoOptions& options);
+int bench_circle(const BenchIsoOptions& options);
 int bench_compare(const BenchCompareOptions& options);
 
 /// "position", "velocity", "torque".

@@ -131,6 +131,11 @@ class BusDrive::Tap final : public image::CanBus {
     if (!file.empty()) log_.open(file);
   }
   bool send(const image::CanFrame& frame) noexcept override {
+    if (frame.id == canopen::cob::kSync && !frame.extended) {
+      sync_ns = tool_.now();
+      if (times) times->sync.add(sync_ns - due_ns);
+      answered_ = false;
+    }
     const bool taken = bus_.send(frame);
     if (taken) write(frame);
     return taken;
@@ -139,6 +144,11 @@ class BusDrive::Tap final : public image::CanBus {
     const bool came = bus_.receive(frame);
     if (came) {
       recorder_.on_frame(frame);
+      // Its own time of arrival: it may be read a cycle later.
+      if (times && !answered_ && frame.id == 0x180u + node && !frame.extended) {
+        answered_ = true;
+        times->round_trip.add(frame.timestamp_ns - sync_ns);
+      }
       write(frame);
     }
     return came;
@@ -146,6 +156,13 @@ class BusDrive::Tap final : public image::CanBus {
   image::CanState state() const noexcept override { return bus_.state(); }
   std::uint32_t bit_rate() const noexcept override { return tool_.bit_rate(); }
   std::uint64_t lost() const noexcept override { return bus_.lost(); }
+
+  struct Times {
+    report::Histogram sync, round_trip;
+  };
+  std::optional<Times> times;
+  image::Nanoseconds due_ns = 0, sync_ns = 0;
+  canopen::NodeId node = 0;
 
  private:
   void write(const image::CanFrame& frame) {
@@ -155,6 +172,7 @@ class BusDrive::Tap final : public image::CanBus {
   image::CanBus& bus_;
   ObjectRecorder& recorder_;
   std::ofstream log_;
+  bool answered_ = true;
 };
 
 BusDrive::BusDrive(ToolBus& bus, const BenchOptions& options, const DriveUse& use, DriveFacts facts,
@@ -249,7 +267,25 @@ double BusDrive::period_s() const noexcept { return static_cast<double>(period_n
 bool BusDrive::cycle(const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
   const image::Nanoseconds due = start_ns_ + image_->now.t_ns;
   if (!bus_.wait_until(due)) return false;
+  exchange(due, ask, answer);
+  return true;
+}
+
+bool BusDrive::cycle_at(image::Nanoseconds due, const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
+  exchange(due, ask, answer);
+  return !bus_.gone();
+}
+
+void BusDrive::begin_times() {
+  tap_->node = node_;
+  tap_->times.emplace();
+}
+const report::Histogram& BusDrive::sync_lateness() const { return tap_->times->sync; }
+const report::Histogram& BusDrive::round_trip() const { return tap_->times->round_trip; }
+
+void BusDrive::exchange(image::Nanoseconds due, const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
   if (bus_.now() - due > period_ns_ / 2) ++late_;
+  tap_->due_ns = due;
   answer.time_s = static_cast<double>(opened_ns_) * 1e-9;  // what comes now was latched by the SYNC before
   opened_ns_ = bus_.now() - start_ns_;
   segment_->open_cycle(*image_);
@@ -288,7 +324,6 @@ bool BusDrive::cycle(const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
   segment_->send(*image_);
   ++image_->now.number;
   image_->now.t_ns += period_ns_;
-  return true;
 }
 
 }  // namespace servogate::gateway::command

@@ -13,6 +13,7 @@
 #include "gateway/command/bench/recorded_object.hpp"
 #include "gateway/command/bench/stop_key.hpp"
 #include "gateway/command/canopen/bus/tool_bus.hpp"
+#include "report/statistics.hpp"
 
 namespace servogate::gateway::command {
 
@@ -54,6 +55,13 @@ class BusDrive final : public bench::BenchDrive {
   bool ended() const override { return bus_.ended() || (use_.key_ends && key_.pressed()); }
   const StopKey& key() const noexcept { return key_; }
   const ObjectRecorder& recorder() const noexcept { return recorder_; }
+  /// The same for who waits himself until `due` (ns of the computer's clock), with the times of the bus.
+  bool cycle_at(image::Nanoseconds due, const bench::DriveAsk& ask, bench::DriveAnswer& answer);
+  /// From begin_times() on: SYNC behind the time of its cycle, and from SYNC to the first process data of the
+  /// drive, ns.
+  void begin_times();
+  const report::Histogram& sync_lateness() const;
+  const report::Histogram& round_trip() const;
   /// Cycles that began later than half a cycle.
   int late_cycles() const noexcept { return late_; }
 
@@ -62,6 +70,7 @@ class BusDrive final : public bench::BenchDrive {
   BusDrive(ToolBus& bus, const BenchOptions& options, const DriveUse& use, DriveFacts facts,
            const std::string& log);
   bool boot();
+  void exchange(image::Nanoseconds due, const bench::DriveAsk& ask, bench::DriveAnswer& answer);
   /// Writes an object of up to four bytes and remembers what it was. Empty: done, or the drive does not have
   /// it; otherwise why not.
   std::string change(std::uint16_t index, std::int64_t value);
