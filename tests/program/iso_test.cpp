@@ -181,6 +181,18 @@ TEST(IsoTurning, waits_behind_data_that_are_written_in_the_main_run) {
   EXPECT_FALSE(needs_sync(0x800));
 }
 
+TEST(IsoTurning, goes_on_from_the_touch_and_not_from_the_programmed_end) {
+  Interpreter run("sinumerik-808d", lathe(), {}, "p.nc", "G98 G31 Z-10. F100\nG00 W1.\n", {}, Position{});
+  ASSERT_TRUE(std::holds_alternative<Command>(run.next({}, false)));
+  Position touch{};
+  touch[kZ] = -5.24;
+  run.probed(touch);
+  const Step step = run.next({}, true);
+  const auto* command = std::get_if<Command>(&step);
+  ASSERT_NE(command, nullptr);
+  EXPECT_NEAR(std::get<Rapid>(command->what).to[kZ], -4.24, 1e-9);
+}
+
 TEST(IsoTurning, waits_for_what_a_measurement_has_found) {
   Interpreter run("sinumerik-808d", lathe(), {}, "p.nc", "G98 G31 Z-10. F100\nG00 X2.\n", {}, Position{});
   ASSERT_TRUE(std::holds_alternative<Command>(run.next({}, false)));

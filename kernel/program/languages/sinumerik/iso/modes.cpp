@@ -120,6 +120,25 @@ void thread(Execution& run, const BlockWords& words) {
   run.motion().thread(cut);
 }
 
+namespace {
+
+void keep_measured(Execution& run) {
+  State& state = run.state();
+  for (int a = 0; a < run.machine().axis_count(); ++a) {
+    state.own[own::measured_machine + at(a)] = state.frames.machine[at(a)];
+    state.own[own::measured_work + at(a)] = state.frames.programmed[at(a)];
+  }
+}
+
+/// Increments of the next block count from the touch, not from where the axes rest.
+void take_touch(Execution& run) {
+  run.state().frames.machine = run.state().probing.touches.front();
+  run.frames().changed();
+  keep_measured(run);
+}
+
+}  // namespace
+
 /// G31: what the probe finds is known when the motion has ended (specification 15).
 void measure(Execution& run, const BlockWords& words) {
   run.refuse_words_but_axes(words);
@@ -135,10 +154,10 @@ void measure(Execution& run, const BlockWords& words) {
   const double per_minute = feed.unit == FeedUnit::mm_per_rev ? feed.value * state.modes.speed : feed.value;
   run.emit(Probe{to, per_minute});
   state.frames.machine = to;
-  for (int a = 0; a < run.machine().axis_count(); ++a) {
-    state.own[own::measured_machine + at(a)] = to[at(a)];
-    state.own[own::measured_work + at(a)] = state.frames.programmed[at(a)];
-  }
+  keep_measured(run);
+  state.probing = {};
+  state.probing.expected = 1;
+  state.probing.take = take_touch;
   state.flow.barrier = true;
   run.depends_on_machine();
 }
