@@ -194,6 +194,16 @@ TEST(Run, turns_a_shaft_in_the_language_of_a_Fenix_and_leaves_the_axes_where_it_
   EXPECT_GT(seconds_of_motion(TraceFile(scratch.path("t.csv")), {"X", "Z"}), 300.0);
 }
 
+TEST(Run, mills_a_flange_in_the_ISO_dialect_of_a_SINUMERIK_and_leaves_the_axes_where_it_ends) {
+  const Scratch scratch;
+  const Ending ran =
+      servogate({"run", source("examples/iso-flange/machine.toml"), source("examples/iso-flange/flange.nc"),
+                 "--tables", source("examples/iso-flange/tables"), "--virtual", "--trace",
+                 scratch.path("t.csv"), "-q"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_GT(seconds_of_motion(TraceFile(scratch.path("t.csv")), {"X", "Y", "Z"}), 120.0);
+}
+
 TEST(Canon, prints_one_object_a_line_with_command_and_line) {
   const Ending e = servogate({"canon", mill_file(), source("examples/mill/bracket.nc")});
   ASSERT_EQ(e.code, 0) << e.err;

@@ -121,7 +121,7 @@ double from_way(const Position& p, const Position& a, const Position& b, std::si
 
 /// How many of the cases ran on this machine.
 int run_all(const std::string& example, const std::string& language, const std::string& axes_of_cases,
-            std::set<std::string>& done) {
+            std::set<std::string>& done, const std::string& folder = {}) {
   const machine::LoadResult loaded = machine::load(source("examples/" + example + "/machine.toml"));
   Mill mill(loaded, "");
   const program::MachineModel model = gateway::program_model(loaded.machine, 0);
@@ -137,7 +137,8 @@ int run_all(const std::string& example, const std::string& language, const std::
   };
   int count = 0;
   for (const std::string& path :
-       program::tests::case_paths(servogate::tests::source_dir() + "/tests/program/" + language)) {
+       program::tests::case_paths(servogate::tests::source_dir() + "/tests/program/" +
+                                  (folder.empty() ? language : folder))) {
     const program::tests::CaseFile c = program::tests::read_case(path);
     std::string letters;
     for (const auto& axis : c.machine.axes) letters += axis.letter + (axis.diameter ? "d" : "");
@@ -195,6 +196,14 @@ TEST(ProgramRuns, of_Fenix_lead_the_set_points_of_its_lathe_by_every_place_withi
   const int lathe = run_all("fenix-shaft", "fenix", "XdZ", done);
   std::printf("%d programs of Fenix\n", lathe);
   EXPECT_GE(lathe, 40);
+}
+
+/// Cases of the Siemens mode are none on a machine that powers on in the ISO dialect: what they say is refused.
+TEST(ProgramRuns, of_the_ISO_dialect_lead_the_set_points_of_its_mill_by_every_place_within_the_limits) {
+  std::set<std::string> done;
+  const int mill = run_all("iso-flange", "sinumerik-808d", "XYZ", done, "sinumerik");
+  std::printf("%d programs of the ISO dialect\n", mill);
+  EXPECT_GE(mill, 30);
 }
 
 }  // namespace
