@@ -85,7 +85,8 @@ class BusDrive final : public bench::BenchDrive {
   std::unique_ptr<Tap> tap_;
   std::unique_ptr<canopen::Segment> segment_;
   std::unique_ptr<image::ProcessImage> image_;
-  image::Nanoseconds start_ns_ = 0;
+  image::Nanoseconds begin_ns_ = 0;   ///< of times that are told
+  image::Nanoseconds start_ns_ = 0;   ///< the same, behind by what the computer has stood still
   image::Nanoseconds opened_ns_ = 0;  ///< the SYNC before
   std::optional<std::int64_t> zero_counts_;
   struct Changed {
