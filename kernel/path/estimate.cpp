@@ -26,9 +26,13 @@ Estimate estimate(const Config& config, const Vector& start, std::span<const Ele
       if (next == elements.size() || out.flawed != 0) {
         planner.finish();
         finished = true;
-      } else if (!planner.add(elements[next++])) {
-        out.flawed = next;
-        out.flaw = planner.last_flaw();
+      } else {
+        Element element = elements[next++];
+        element.lock = {};  // no spindle turns here: at the speed that its lead is planned for
+        if (!planner.add(element)) {
+          out.flawed = next;
+          out.flaw = planner.last_flaw();
+        }
       }
       planner.work();
     }

@@ -26,6 +26,7 @@ Survey::Survey(const Config& config, const Vector& start)
 bool Survey::add(const Element& element) {
   Element numbered = element;
   numbered.tag.command = first_ + elements_.size();
+  numbered.lock = {};  // no spindle turns here: at the speed that its lead is planned for
   if (!planner_.add(numbered)) return false;
   elements_.push_back({element.tag, element.kind == Element::Kind::rapid ? 0.0 : element.feed});
   for (planner_.work(); !planner_.wants_more(); planner_.work()) step();

@@ -31,6 +31,19 @@ std::vector<Element> circle(double radius, int blocks, double feed) {
   return e;
 }
 
+TEST(Survey, of_a_thread_and_a_tap_ends_although_no_spindle_turns) {
+  std::vector<Element> e{line_to(0, 0, -30, 15), line_to(0, 0, -60, 15), line_to(0, 0, 0, 15)};
+  const Lock::Kind kinds[] = {Lock::Kind::thread, Lock::Kind::tap_in, Lock::Kind::tap_out};
+  for (std::size_t n = 0; n < e.size(); ++n) {
+    e[n].lock = {kinds[n], 1.5, 0.0, 0.0};
+    e[n].revolutions = 10.0;
+  }
+  slow_places(mill(), e);
+  const Estimate found = estimate(mill(), {}, e);
+  EXPECT_GT(found.seconds, 120.0 / 15.0);
+  EXPECT_LT(found.seconds, 120.0 / 15.0 + 2.0);
+}
+
 TEST(Survey, of_exact_stops_names_the_blocks_between_which_the_path_rests) {
   std::vector<Element> e{line_to(50, 0, 0, 100), line_to(50, 50, 0, 100), line_to(0, 50, 0, 100)};
   e[0].transition.continuation = Continuation::exact_stop;
