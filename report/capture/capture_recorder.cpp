@@ -22,7 +22,7 @@ std::size_t rows_of(const CaptureLayout& layout, std::size_t rows) {
   const auto second =
       static_cast<std::size_t>(std::max<image::Nanoseconds>(1, 1'000'000'000 / layout.period_ns));
   const std::size_t row = sizeof(double) * std::max<std::size_t>(1, layout.channels.size());
-  return std::clamp<std::size_t>(kMostBytes / row, 64, second);
+  return std::max<std::size_t>(64, std::min(kMostBytes / row, second));
 }
 
 }  // namespace

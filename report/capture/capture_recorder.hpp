@@ -17,7 +17,7 @@ namespace servogate::report {
 /// cycle. Real time never waits: what finds a queue full is lost and counted.
 class CaptureRecorder {
  public:
-  /// `rows` that the queue takes; 0: as many as a second has, within 64 MB.
+  /// The layout has a channel at least. `rows` that the queue takes; 0: as many as a second has, within 64 MB.
   explicit CaptureRecorder(std::unique_ptr<Capture> capture, std::size_t rows = 0);
   ~CaptureRecorder();
   CaptureRecorder(const CaptureRecorder&) = delete;

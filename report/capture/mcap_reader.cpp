@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
@@ -23,8 +24,11 @@ namespace {
 
 constexpr std::uint64_t kMostRecord = std::uint64_t{256} << 20;
 constexpr std::size_t kMostChannels = 65536;
+constexpr std::size_t kMostMessage = std::size_t{16} << 20;
 
 const text::Entry kNoFile{"capture.no-file", "cannot read {0}: {1}", "{0} не читается: {1}"};
+const text::Entry kNoRegularFile{"capture.no-regular-file", "{0} is no regular file",
+                                 "{0} — не обычный файл"};
 const text::Entry kNoCapture{"capture.not-mcap",
                              "{0} is no MCAP file: it does not begin with the mark of one",
                              "{0} — не файл MCAP: он не начинается с его метки"};
@@ -170,7 +174,7 @@ void Reader::message(std::string_view content) {
   in.number<std::uint32_t>();
   const auto t = static_cast<image::Nanoseconds>(in.number<std::uint64_t>());
   in.number<std::uint64_t>();
-  if (topic == topics_.end()) throw Malformed{};
+  if (topic == topics_.end() || in.rest().size() > kMostMessage) throw Malformed{};
   const json message = json::parse(in.rest(), nullptr, false);
   if (!message.is_object()) throw Malformed{};
   if (topic->second.fields.empty()) {
@@ -262,6 +266,9 @@ bool Reader::record(Kind kind, std::string_view content) {
 }
 
 std::optional<UnreadCapture> Reader::read() {
+  std::error_code ignored;
+  if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_regular_file(path_, ignored))
+    return UnreadCapture{&kNoRegularFile, {path_}};
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path_.c_str(), "rb"), &std::fclose);
   if (file == nullptr) return UnreadCapture{&kNoFile, {path_, text::words_of(errno)}};
   const auto bytes = [&](std::string& out, std::uint64_t size) {

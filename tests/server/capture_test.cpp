@@ -121,6 +121,10 @@ TEST_F(Capture, that_cannot_be_made_is_refused_before_anything_moves) {
       {{"--capture", file("a.csv"), "--trigger", "X.error is big"}, "is no condition"},
       {{"--capture", file("a.csv"), "--trigger", "Q.error > 1"}, "Q.error: this machine has no such value"},
       {{"--trigger", "alarm"}, "need --capture FILE"},
+      {{"--capture", file("a.csv"), "--channels", ","}, "is nothing on this machine"},
+      {{"--capture", file("a.csv"), "--trigger", "axes > 1"}, "axes is a group"},
+      {{"--capture", file("a.csv"), "--trigger", "alarm > 0"}, "or alarm alone"},
+      {{"--capture", file("a.csv"), "--channels", "all", "--trigger", "alarm", "--before", "3600"}, " MB"},
       {{"--capture", "/nowhere/a.csv"}, "/nowhere"}};
   for (const auto& row : rows) {
     const Outcome o = run(row.words);

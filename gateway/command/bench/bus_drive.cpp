@@ -24,6 +24,9 @@ const text::Entry kNoScale{"bench.no-scale", "node {0} does not say its {1}: giv
                            "узел {0} не сообщает {1}: задайте ключом {2}"};
 const text::Entry kNoBoot{"bench.no-boot", "node {0} did not come into operation within {1} s; {2}",
                           "узел {0} не начал работу за {1} с; {2}"};
+const text::Entry kNoTorqueLimit{"bench.no-torque-limit",
+                                 "node {0} has no 6072h: only this program watches its torque",
+                                 "у узла {0} нет 6072h: за его моментом следит только эта программа"};
 const text::Entry kNotSet{"bench.not-set", "{0} of node {1} cannot be set: {2}",
                           "{0} узла {1} не записывается: {2}"};
 const text::Entry kNotRestored{"bench.not-restored", "{0} of node {1} is not what it was before: {2}",
@@ -194,7 +197,13 @@ BusDrive::BusDrive(ToolBus& bus, const BenchOptions& options, const DriveUse& us
 
 std::string BusDrive::change(std::uint16_t index, std::int64_t value) {
   const SdoOutcome before = bus_.read(node_, index, 0);
-  if (!before.ok() || before.data.size() > 4) return {};
+  // A drive without its own limit of the torque is watched by the bench alone; anything else must be there.
+  if (before.abort == canopen::AbortCode::object_does_not_exist && index == object::kMaxTorque) {
+    complain(kNoTorqueLimit, {std::to_string(node_)});
+    return {};
+  }
+  if (!before.ok()) return before.why();
+  if (before.data.size() > 4) return text::both("it is longer than 4 bytes", "он длиннее 4 байтов");
   std::vector<std::uint8_t> bytes(before.data.size());
   canopen::store_le(static_cast<std::uint64_t>(value), bytes);
   const SdoOutcome outcome = bus_.write(node_, index, 0, bytes);

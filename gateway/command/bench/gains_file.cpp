@@ -30,6 +30,12 @@ const text::Entry kUnread{"bench.gain-unread", "{0} ({1}) of node {2} cannot be 
 const text::Entry kUnwritten{"bench.gain-unwritten", "{0} ({1}) of node {2} cannot be written: {3}",
                              "{0} ({1}) узла {2} не записывается: {3}"};
 const text::Entry kLength{"bench.gain-length", "{0} bytes are no gain", "байтов: {0} — не коэффициент"};
+const text::Entry kNotWhole{
+    "bench.gain-not-whole",
+    "it holds {0}, which is no gain of whole numbers: objects of REAL are not written",
+    "в нём {0} — это не целый коэффициент: объекты REAL не записываются"};
+const text::Entry kUnknownKey{"bench.gains-key", "{0} is no table or key of a gains file",
+                              "{0} — не таблица и не ключ файла коэффициентов"};
 const text::Entry kRange{"bench.gain-range", "{0} does not fit into the object",
                          "{0} не помещается в объект"};
 
@@ -37,6 +43,7 @@ struct Known {
   const char* name;
   double LoopGains::*gain;
 };
+constexpr std::uint64_t kMostWhole = 1u << 24;  ///< the bits of a REAL32 are more
 constexpr Known kGains[] = {{"velocity_gain", &LoopGains::velocity_gain},
                             {"velocity_integral", &LoopGains::velocity_integral},
                             {"position_gain", &LoopGains::position_gain}};
@@ -55,7 +62,10 @@ std::string read_one(canopen::SdoAccess& access, canopen::NodeId node, const Gai
   length = outcome.data.size();
   if (length == 0 || length > 8)
     return text::render(kLength, std::vector<std::string>{std::to_string(length)}, text::user_language());
-  const double value = static_cast<double>(canopen::load_le(outcome.data)) * o.unit;
+  const std::uint64_t number = canopen::load_le(outcome.data);
+  if (number >= kMostWhole)
+    return text::render(kNotWhole, std::vector<std::string>{std::to_string(number)}, text::user_language());
+  const double value = static_cast<double>(number) * o.unit;
   gains.*o.gain = !o.inverse ? value : value > 0.0 ? 1.0 / value : 0.0;
   return {};
 }
@@ -89,6 +99,15 @@ std::optional<GainsFile> read_gains_file(const std::string& path) {
   if (!document.ok()) return wrong(path, document.error_at.line, kSyntax, {document.error});
   using Kind = machine::Element::Kind;
   GainsFile file{path, {}};
+  constexpr std::string_view kKeys[] = {"object", "unit", "inverse"};
+  for (const machine::Element& table : document.root.children) {
+    if (std::none_of(std::begin(kGains), std::end(kGains),
+                     [&](const Known& k) { return table.key == k.name; }))
+      return wrong(path, table.key_at.line, kUnknownKey, {table.key});
+    for (const machine::Element& key : table.children)
+      if (std::find(std::begin(kKeys), std::end(kKeys), key.key) == std::end(kKeys))
+        return wrong(path, key.key_at.line, kUnknownKey, {key.key});
+  }
   for (const Known& known : kGains) {
     const machine::Element* table = document.root.find(known.name);
     if (table == nullptr) continue;
@@ -130,6 +149,34 @@ bool write_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFi
     return false;
   }
   return true;
+}
+
+std::optional<KeptGains> keep_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file) {
+  KeptGains kept;
+  for (const GainObject& o : file.objects) {
+    SdoOutcome outcome = access.read(node, o.at.index, o.at.subindex);
+    if (!outcome.ok()) {
+      complain(kUnread,
+               {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), outcome.why()});
+      return std::nullopt;
+    }
+    kept.push_back(std::move(outcome.data));
+  }
+  return kept;
+}
+
+bool restore_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
+                   const KeptGains& kept) {
+  bool all = true;
+  for (std::size_t n = 0; n < kept.size(); ++n) {
+    const GainObject& o = file.objects[n];
+    const SdoOutcome outcome = access.write(node, o.at.index, o.at.subindex, kept[n]);
+    if (outcome.ok()) continue;
+    complain(kUnwritten,
+             {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), outcome.why()});
+    all = false;
+  }
+  return all;
 }
 
 std::string gains_dcf(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file) {

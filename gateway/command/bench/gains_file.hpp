@@ -36,6 +36,13 @@ std::optional<bench::LoopGains> read_gains(canopen::SdoAccess& access, canopen::
 /// which has been said.
 bool write_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
                  bench::LoopGains& gains);
+/// The bytes of the gains, in the order of the file's objects.
+using KeptGains = std::vector<std::vector<std::uint8_t>>;
+/// As they stand; nullopt: one cannot be read, which has been said.
+std::optional<KeptGains> keep_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file);
+/// Writes all of them back. False: some were refused, each of which has been said.
+bool restore_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
+                   const KeptGains& kept);
 /// The gains as a DCF that `servogate od --restore` writes back into this device. Empty: they cannot be read.
 std::string gains_dcf(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file);
 

@@ -100,11 +100,12 @@ int finish(BenchWork& work, bool found, const std::optional<RunLimits>& limits, 
   work.meta["late_cycles"] = work.drive.late_cycles();
   work.meta["off"] = off;
   const bool passed = !limits || judge(*limits, work.meta);
-  if (!write_run(o.out, work.guard, work.drive.recorder(), work.meta)) return kInfrastructure;
-  if (o.json && !o.part) print_exact(work.meta.dump(1, ' ', false, json::error_handler_t::replace));
   if (!off) complain(kStillOn, {});
-  if (const int code = verdict(o, work.guard, found, work.why); code != kDone) return code;
+  const bool written = write_run(o.out, work.guard, work.drive.recorder(), work.meta);
+  if (o.json && !o.part) print_exact(work.meta.dump(1, ' ', false, json::error_handler_t::replace));
+  const int code = verdict(o, work.guard, found, work.why);
   if (limits && !o.json) print_judgement(work.meta);
+  if (code != kDone || !written) return written ? code : kInfrastructure;
   if (!o.json && !o.part)
     print_line(text::render(kKept, std::vector<std::string>{o.out}, text::user_language()));
   return off && passed ? kDone : kAlarm;

@@ -107,6 +107,9 @@ class Tuner {
     auto present = read_gains(bus_, node_, file_);
     if (!present) return kAlarm;
     present_ = *present;
+    auto kept = keep_gains(bus_, node_, file_);
+    if (!kept) return kAlarm;
+    kept_ = std::move(*kept);
     if (!save_dcf("before.dcf")) return kInfrastructure;
     if (const int code = measure("response", "step", before_); code != kDone) return code;
     if (const int code = propose(); code != kDone) return code;
@@ -241,7 +244,10 @@ class Tuner {
     }
     meta_["kept"] = code == kDone;
     if (code != kDone) return take_back(code, why);
-    if (!save_dcf("tuned.dcf")) return kInfrastructure;
+    if (!save_dcf("tuned.dcf")) {
+      meta_["kept"] = false;
+      return take_back(kInfrastructure, text::both("tuned.dcf was not written", "tuned.dcf не записан"));
+    }
     if (!o_.json) say(kKeptGains, {o_.bus, std::to_string(o_.node), o_.out});
     return finish(kDone);
   }
@@ -258,8 +264,7 @@ class Tuner {
   }
 
   int take_back(int code, const std::string& why) {
-    LoopGains back = present_;
-    if (write_gains(bus_, node_, file_, back)) {
+    if (restore_gains(bus_, node_, file_, kept_)) {
       complain(kTakenBack, {why});
     } else {
       complain(kNotBack, {o_.bus, std::to_string(o_.node), o_.out});
@@ -328,6 +333,7 @@ class Tuner {
   ToolBus& bus_;
   canopen::NodeId node_;
   LoopGains present_, written_;
+  KeptGains kept_;  ///< what the drive had before
   Measured before_, after_;
   std::optional<bench::Tuning> tuning_;
   std::vector<double> expected_;

@@ -65,8 +65,7 @@ int say_of_which_node(const OdWork& work, const std::string& path, const canopen
 /// The identity in which the file is of another device; nullptr: it may be of this one.
 const Difference* other_device(const std::vector<Difference>& found) {
   for (const Difference& d : found)
-    if (d.outcome.ok() && d.index == canopen::object::kIdentity && (d.subindex == 1 || d.subindex == 2))
-      return &d;
+    if (d.index == canopen::object::kIdentity && (d.subindex == 1 || d.subindex == 2)) return &d;
   return nullptr;
 }
 

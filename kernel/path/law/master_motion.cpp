@@ -125,6 +125,8 @@ void MasterMotion::fail(MasterFault fault, double value, double limit) noexcept 
   fault_ = fault;
   value_ = value;
   limit_ = limit;
+  // Its axis stops here: the spindle must, too.
+  if (lock_.kind != Lock::Kind::thread && phase_ != Phase::waiting) halt_ = true;
   give_up();
 }
 

@@ -23,16 +23,28 @@ const text::Entry kNoChannel{
     "of the interface, addresses and variables of the PLC",
     "--channels: {0}: у этого станка нет такой величины. Группы: {1}; величины — например, {2}, точки, слова "
     "интерфейса, адреса и переменные ПЛК"};
-const text::Entry kNoTrigger{
-    "capture.no-trigger",
-    "--trigger: {0} is no condition: write NAME, one of < <= > >= = !=, and a number, or alarm",
-    "--trigger: {0} — не условие: напишите ИМЯ, один из знаков < <= > >= = != и число, или alarm"};
+const text::Entry kNothing{"capture.nothing",
+                           "--channels: {0} is nothing on this machine: name values that it has",
+                           "--channels: {0} — на этом станке пусто: назовите величины, которые у него есть"};
+const text::Entry kGroup{"capture.group", "--trigger: {0} is a group: name one value",
+                         "--trigger: {0} — группа: назовите одну величину"};
+const text::Entry kMemory{
+    "capture.memory",
+    "--before {0} s of {1} values needs {2} MB: fewer channels or a shorter time; at most {3} MB",
+    "--before {0} с для величин: {1} — это {2} МБ: возьмите меньше величин или времени; не больше {3} МБ"};
+const text::Entry kNoTrigger{"capture.no-trigger",
+                             "--trigger: {0} is no condition: write NAME, one of < <= > >= = !=, and a "
+                             "number (the number of alarms is alarms), or alarm alone",
+                             "--trigger: {0} — не условие: напишите ИМЯ, один из знаков < <= > >= = != и "
+                             "число (число аварий — alarms), или одно слово alarm"};
 const text::Entry kNoFormat{"capture.no-format", "--capture: {0} ends neither with .csv nor with .mcap",
                             "--capture: {0} не кончается ни на .csv, ни на .mcap"};
 const text::Entry kNeedsFile{"capture.no-file-named", "--channels and --trigger need --capture FILE",
                              "--channels и --trigger требуют --capture ФАЙЛ"};
 const text::Entry kLost{"capture.lost", "{0} values or frames are missing: the computer was too slow",
                         "не хватает величин или кадров: {0}; компьютер не успевал"};
+
+constexpr double kMostMemory = 2000.0;  // MB
 
 std::vector<std::string> names_in(const std::string& list) {
   std::vector<std::string> names;
@@ -111,7 +123,29 @@ std::unique_ptr<MachineCapture> MachineCapture::open(Control& control, const Cap
       why = {&kNoTrigger, {request.trigger}};
       return nullptr;
     }
-    if (!add(settings.trigger->channel)) return nullptr;
+    const std::string& name = settings.trigger->channel;
+    if (name == "alarm") {
+      why = {&kNoTrigger, {request.trigger}};
+      return nullptr;
+    }
+    if (MachineChannels::is_group(name)) {
+      why = {&kGroup, {name}};
+      return nullptr;
+    }
+    if (!add(name)) return nullptr;
+  }
+  if (channels.channels().empty()) {
+    why = {&kNothing, {request.channels}};
+    return nullptr;
+  }
+  const double rows =
+      settings.trigger ? request.before_s * 1e9 / static_cast<double>(control.machine().cycle_ns()) : 0.0;
+  const double megabytes = rows * static_cast<double>(sizeof(double) * channels.channels().size()) / 1e6;
+  if (megabytes > kMostMemory) {
+    why = {&kMemory,
+           {text::number(request.before_s), std::to_string(channels.channels().size()),
+            text::number(megabytes, 0), text::number(kMostMemory, 0)}};
+    return nullptr;
   }
   std::unique_ptr<MachineCapture> capture(new MachineCapture(control, std::move(channels), request.file));
   capture->start(std::move(settings),

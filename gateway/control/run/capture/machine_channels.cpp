@@ -173,14 +173,16 @@ void MachineChannels::add_group(Control& control, const std::string& group) {
       add_named(control, name);
 }
 
-bool MachineChannels::add(Control& control, const std::string& name) {
+bool MachineChannels::is_group(std::string_view name) {
   constexpr std::string_view kNames[] = {"axes",      "spindles", "processes", "points",
                                          "interface", "plc",      "all"};
-  if (std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames)) {
-    add_group(control, name);
-    return true;
-  }
-  return add_value(control, name) || add_named(control, name);
+  return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+bool MachineChannels::add(Control& control, const std::string& name) {
+  if (!is_group(name)) return add_value(control, name) || add_named(control, name);
+  add_group(control, name);
+  return true;
 }
 
 void MachineChannels::read(Control& control, std::span<double> values) const noexcept {

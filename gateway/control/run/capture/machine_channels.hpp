@@ -20,6 +20,7 @@ class MachineChannels {
   /// `spindles`, `processes`, `points`, `interface`, `plc`, `all`. A name twice counts once. False: there is
   /// no such value. Not real-time safe.
   bool add(Control& control, const std::string& name);
+  static bool is_group(std::string_view name);
   static constexpr std::string_view kGroups = "axes, spindles, processes, points, interface, plc, all";
 
   const std::vector<report::CaptureChannel>& channels() const noexcept { return channels_; }
