@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/capture/csv_capture.hpp"
+
 namespace servogate::report {
 
 namespace {
@@ -15,10 +17,9 @@ image::Nanoseconds nanoseconds(double seconds) {
 std::string words(const Trigger& trigger) {
   constexpr const char* kWords[] = {"<", "<=", ">", ">=", "=", "!=", ""};
   if (trigger.compare == Trigger::Compare::rises) return "alarm";
-  std::string value = std::to_string(trigger.value);
-  value.erase(value.find_last_not_of('0') + 1);
-  if (value.back() == '.') value.pop_back();
-  return trigger.channel + ' ' + kWords[static_cast<std::size_t>(trigger.compare)] + ' ' + value;
+  std::string text = trigger.channel + ' ' + kWords[static_cast<std::size_t>(trigger.compare)] + ' ';
+  append_number(text, trigger.value, "nan");
+  return text;
 }
 
 }  // namespace
@@ -32,6 +33,7 @@ Capture::Capture(CaptureLayout layout, CaptureSettings settings, Open open)
     if (at != layout_.channels.end())
       watch_.emplace(*settings_.trigger, static_cast<std::size_t>(at - layout_.channels.begin()));
   }
+  if (!watch_) return;
   const double period_s = static_cast<double>(layout_.period_ns) * 1e-9;
   rows_ = static_cast<std::size_t>(std::ceil(settings_.before_s / period_s)) + 1;
   ring_.resize(rows_ * layout_.channels.size());
@@ -44,35 +46,31 @@ std::span<const double> Capture::kept(std::size_t slot) const {
 }
 
 void Capture::row(image::Nanoseconds t_ns, std::span<const double> values) {
-  newest_ns_ = t_ns;
   if (sink_ != nullptr && until_ns_ && t_ns > *until_ns_) close();
-  if (!settings_.trigger && files_ == 0) open({});
+  if (!settings_.trigger && files_ == 0) open();
+  if (sink_ != nullptr) sink_->row(t_ns, values);
+  if (!watch_) return;
   const auto slot = static_cast<std::size_t>(count_++ % rows_);
   std::copy(values.begin(), values.end(),
             ring_.begin() + static_cast<std::ptrdiff_t>(slot * layout_.channels.size()));
   times_[slot] = t_ns;
-  const bool written = sink_ != nullptr;
-  if (written) sink_->row(t_ns, values);
-  if (watch_ && watch_->fires(values)) fire(words(*settings_.trigger));
+  if (watch_->fires(values)) fire();
 }
 
 void Capture::frame(const CaptureFrame& frame) {
-  if (sink_ != nullptr) return sink_->frame(frame);
-  if (!settings_.trigger || files_ >= settings_.most) return;
+  if (sink_ != nullptr) sink_->frame(frame);
+  if (!watch_ || files_ >= settings_.most) return;
   frames_.push_back(frame);
   const image::Nanoseconds oldest = frame.t_ns - nanoseconds(settings_.before_s);
   while (frames_.front().t_ns < oldest) frames_.pop_front();
 }
 
-void Capture::note(image::Nanoseconds t_ns, const std::string& text) {
-  if (sink_ != nullptr) sink_->note(t_ns, text);
-}
-
-void Capture::fire(const std::string& text) {
+/// At the newest row.
+void Capture::fire() {
+  const image::Nanoseconds now = times_[static_cast<std::size_t>((count_ - 1) % rows_)];
   if (sink_ == nullptr) {
     if (files_ >= settings_.most) return;
-    open(text);
-    if (sink_ == nullptr) return;
+    open();
     // What was before is in the order of time: frames between the rows of their cycles.
     auto frame = frames_.begin();
     const std::uint64_t first = count_ > rows_ ? count_ - rows_ : 0;
@@ -82,19 +80,17 @@ void Capture::fire(const std::string& text) {
       sink_->row(times_[slot], kept(slot));
     }
     for (; frame != frames_.end(); ++frame) sink_->frame(*frame);
-    frames_.clear();
   }
-  sink_->note(newest_ns_, text);
-  if (settings_.trigger) until_ns_ = newest_ns_ + nanoseconds(settings_.after_s);
+  sink_->note(now, words(*settings_.trigger));
+  until_ns_ = now + nanoseconds(settings_.after_s);
 }
 
 void Capture::end() { close(); }
 
-void Capture::open(const std::string& text) {
+void Capture::open() {
   ++files_;
-  sink_ = open_(files_, text);
-  until_ns_.reset();
-  if (sink_ != nullptr) sink_->begin(layout_);
+  sink_ = open_(files_);
+  sink_->begin(layout_);
 }
 
 void Capture::close() {
@@ -102,6 +98,7 @@ void Capture::close() {
   sink_->end();
   if (error_.empty()) error_ = sink_->error();
   sink_.reset();
+  until_ns_.reset();
 }
 
 }  // namespace servogate::report

@@ -24,17 +24,13 @@ struct CaptureSettings {
 /// for the cycle. Memory: before_s of rows, whatever the duration.
 class Capture {
  public:
-  /// Makes the sink of file `number`, from 1, triggered by `text` (empty: no trigger). nullptr: not written.
-  using Open = std::function<std::unique_ptr<CaptureSink>(int number, const std::string& text)>;
+  /// Makes the sink of file `number`, from 1.
+  using Open = std::function<std::unique_ptr<CaptureSink>(int number)>;
   Capture(CaptureLayout layout, CaptureSettings settings, Open open);
 
   const CaptureLayout& layout() const noexcept { return layout_; }
   void row(image::Nanoseconds t_ns, std::span<const double> values);
   void frame(const CaptureFrame& frame);
-  /// Goes into the file that is open, and into none where none is.
-  void note(image::Nanoseconds t_ns, const std::string& text);
-  /// Triggers from outside, at the newest row; `text` says why.
-  void fire(const std::string& text);
   /// Nothing more comes.
   void end();
 
@@ -44,7 +40,8 @@ class Capture {
 
  private:
   std::span<const double> kept(std::size_t n) const;
-  void open(const std::string& text);
+  void open();
+  void fire();
   void close();
 
   CaptureLayout layout_;
@@ -57,7 +54,6 @@ class Capture {
   std::vector<double> ring_;
   std::vector<image::Nanoseconds> times_;
   std::deque<CaptureFrame> frames_;
-  image::Nanoseconds newest_ns_ = 0;
   std::unique_ptr<CaptureSink> sink_;
   std::optional<image::Nanoseconds> until_ns_;  ///< of the file that is open; nullopt: to the end
   int files_ = 0;

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace servogate::report {
 
@@ -38,8 +38,6 @@ struct CaptureRecorder::Impl {
   alignas(64) std::atomic<std::uint64_t> consumed{0};
   std::atomic<std::uint64_t> lost{0};
   moodycamel::ReaderWriterQueue<CaptureFrame> frames{kFrames};
-  std::mutex mutex;
-  std::vector<std::string> triggers;  ///< from outside
   std::atomic<bool> closing{false};
   std::thread writer;
   int files = 0;
@@ -69,12 +67,6 @@ struct CaptureRecorder::Impl {
       capture->row(t, slot(n));
       consumed.store(n + 1, std::memory_order_release);
     }
-    std::vector<std::string> fired;
-    {
-      const std::lock_guard lock(mutex);
-      fired.swap(triggers);
-    }
-    for (const std::string& text : fired) capture->fire(text);
     return from != to;
   }
 
@@ -124,11 +116,6 @@ void CaptureRecorder::wait_for_room() const {
   while (i.accepted.load(std::memory_order_relaxed) - i.consumed.load(std::memory_order_acquire) >= i.rows ||
          i.frames.size_approx() >= kFrames - kFrameRoom)
     std::this_thread::yield();
-}
-
-void CaptureRecorder::fire(std::string text) {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->triggers.push_back(std::move(text));
 }
 
 std::string CaptureRecorder::close() {

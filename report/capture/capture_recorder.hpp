@@ -2,11 +2,9 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "report/capture/capture.hpp"
 
@@ -17,7 +15,8 @@ namespace servogate::report {
 /// cycle. Real time never waits: what finds a queue full is lost and counted.
 class CaptureRecorder {
  public:
-  /// The layout has a channel at least. `rows` that the queue takes; 0: as many as a second has, within 64 MB.
+  /// The layout has a channel at least. `rows` that the queue takes; 0: as many as a second has, within 64
+  /// MB.
   explicit CaptureRecorder(std::unique_ptr<Capture> capture, std::size_t rows = 0);
   ~CaptureRecorder();
   CaptureRecorder(const CaptureRecorder&) = delete;
@@ -32,8 +31,6 @@ class CaptureRecorder {
   void frame(const CaptureFrame& frame) noexcept;
   /// Blocks until a cycle's row and frames are sure to find room; in virtual time.
   void wait_for_room() const;
-  /// Triggers the capture at the newest row that was handed over. Any thread but the cycle's.
-  void fire(std::string text);
 
   /// Writes what is queued, ends the capture and the thread; later calls do nothing. The error, empty: none.
   /// Not real-time safe.

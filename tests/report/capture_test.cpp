@@ -99,7 +99,7 @@ CaptureFrame frame(image::Nanoseconds t, std::uint32_t id) {
 std::vector<Kept> run(CaptureSettings settings, int cycles, const std::function<bool(int)>& open_door) {
   std::vector<Kept> files(16);
   int made = 0;
-  Capture capture(layout(), settings, [&](int number, const std::string&) {
+  Capture capture(layout(), settings, [&](int number) {
     made = number;
     return std::make_unique<Into>(files[static_cast<std::size_t>(number - 1)]);
   });
@@ -169,6 +169,21 @@ TEST(Capture, that_fires_again_meanwhile_is_longer_and_later_makes_another_file_
   EXPECT_EQ(files[1].rows.back().first, ms(1550));
 }
 
+TEST(Capture, of_a_second_trigger_soon_behind_the_first_file_has_the_frames_of_the_time_before_it) {
+  const auto fires = [](int n) { return n == 1000 || n == 1060; };
+  const auto files = run({parse_trigger("door_open > 0"), 0.05, 0.05, 2}, 3000, fires);
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[1].rows.front().first, ms(1010));
+  EXPECT_EQ(files[1].frames.front().t_ns, ms(1010));
+}
+
+TEST(Capture, names_its_trigger_however_small_it_is) {
+  const auto files =
+      run({parse_trigger("door_open > 1e-07"), 0.01, 0.01, 1}, 200, [](int n) { return n == 100; });
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_EQ(files[0].notes[0].second, "door_open > 1e-07");
+}
+
 TEST(Capture, that_stands_at_its_trigger_from_the_begin_fires_once) {
   const auto files = run({parse_trigger("door_open = 1"), 0.02, 0.01, 9}, 500, [](int) { return true; });
   EXPECT_EQ(files.size(), 1u);
@@ -176,8 +191,8 @@ TEST(Capture, that_stands_at_its_trigger_from_the_begin_fires_once) {
 
 TEST(Capture, carries_rows_over_to_its_thread_without_loss_and_in_the_order_of_time) {
   Kept kept;
-  auto capture = std::make_unique<Capture>(
-      layout(), CaptureSettings{}, [&](int, const std::string&) { return std::make_unique<Into>(kept); });
+  auto capture = std::make_unique<Capture>(layout(), CaptureSettings{},
+                                           [&](int) { return std::make_unique<Into>(kept); });
   CaptureRecorder recorder(std::move(capture), 128);
   constexpr int kRows = 20000;
   for (int n = 0; n < kRows; ++n) {
@@ -201,8 +216,8 @@ TEST(Capture, carries_rows_over_to_its_thread_without_loss_and_in_the_order_of_t
 
 TEST(Capture, whose_queue_is_full_counts_what_it_loses) {
   Kept kept;
-  auto capture = std::make_unique<Capture>(
-      layout(), CaptureSettings{}, [&](int, const std::string&) { return std::make_unique<Into>(kept); });
+  auto capture = std::make_unique<Capture>(layout(), CaptureSettings{},
+                                           [&](int) { return std::make_unique<Into>(kept); });
   CaptureRecorder recorder(std::move(capture), 4);
   std::uint64_t refused = 0;
   for (int n = 0; n < 100000; ++n) {

@@ -148,8 +148,7 @@ std::unique_ptr<MachineCapture> MachineCapture::open(Control& control, const Cap
     return nullptr;
   }
   std::unique_ptr<MachineCapture> capture(new MachineCapture(control, std::move(channels), request.file));
-  capture->start(std::move(settings),
-                 [path = request.file](int, const std::string&) { return sink_of(path); });
+  capture->start(std::move(settings), [path = request.file](int) { return sink_of(path); });
   return capture;
 }
 
@@ -162,7 +161,7 @@ std::unique_ptr<MachineCapture> MachineCapture::black_box(Control& control, cons
   settings.before_s = kBlackBox_s;
   settings.most = std::numeric_limits<int>::max();
   std::unique_ptr<MachineCapture> capture(new MachineCapture(control, std::move(channels), folder));
-  capture->start(std::move(settings), [folder](int number, const std::string&) {
+  capture->start(std::move(settings), [folder](int number) {
     std::error_code ignored;
     std::filesystem::create_directories(folder, ignored);
     drop_oldest(folder, kBlackBoxes);
