@@ -65,13 +65,21 @@ def in_lockstep(port, script):
         bus.done(max(now + 1, tick if step[0] == "tick" else now + PERIOD))
 
 
+def answer(bus, question, expected):
+    """Waits for the answer to this question: to an access of the same object, since the same may have been asked before."""
+    while True:
+        identifier, length, data = struct.unpack("=IB3x8s", bus.recv(16))
+        if identifier == expected and data[1:4] == question[1:4]:
+            return data[:length]
+
+
 def on_socketcan(interface, script):
     bus = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
     # Only answers to service data wake this process.
     bus.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FILTER, struct.pack("=II", 0x580, 0x780))
     bus.bind((interface,))
-    bus.settimeout(30.0)
-    due = None
+    bus.settimeout(1.0)  # a node may come late: what it did not hear is asked again
+    due, tries = None, 0
     step = next(script)
     try:
         while True:
@@ -84,11 +92,13 @@ def on_socketcan(interface, script):
             if step[0] == "send":
                 step = next(script)
                 continue
-            while True:
-                identifier, length, data = struct.unpack("=IB3x8s", bus.recv(16))
-                if identifier == step[3]:
-                    break
-            step = script.send(data[:length])
+            try:
+                step = script.send(answer(bus, step[2], step[3]))
+                tries = 0
+            except TimeoutError:
+                tries += 1
+                if tries == 60:
+                    sys.exit(f"no answer on {step[3]:03X}h to {step[2].hex()} in {tries} s")
     except StopIteration:
         return
 
