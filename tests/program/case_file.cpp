@@ -83,11 +83,10 @@ class Reader {
       for (const auto& row : words_of(text)) case_.rows.push_back(row);
       return;
     }
-    const std::map<std::string, std::vector<CaseFile::Line>*> lists = {{"expect", &case_.expected},
-                                                                       {"contains", &case_.contained},
-                                                                       {"motions", &case_.motions},
-                                                                       {"error", &case_.errors},
-                                                                       {"findings", &case_.findings}};
+    const std::map<std::string, std::vector<CaseFile::Line>*> lists = {
+        {"expect", &case_.expected},  {"contains", &case_.contained}, {"motions", &case_.motions},
+        {"error", &case_.errors},     {"rs274", &case_.rs274},        {"differs", &case_.differs},
+        {"findings", &case_.findings}};
     const auto list = lists.find(section_);
     if (list == lists.end()) bad("no section [" + section_ + "]");
     list->second->push_back({number_, text});

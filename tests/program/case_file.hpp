@@ -27,6 +27,8 @@ struct CaseFile {
   std::vector<Line> motions;      ///< [motions]: every motion, in the short form
   std::vector<Line> errors;       ///< [error]: the error that ends the run
   std::vector<Line> findings;     ///< [findings]: all that check finds, in order
+  std::vector<Line> rs274;        ///< [rs274]: every step of another interpreter, see rs274_test.cpp
+  std::vector<Line> differs;      ///< [differs]: how and why they are not ours
   std::vector<std::string> rows;  ///< [rows]: of the language's checklist, what the case proves
 };
 

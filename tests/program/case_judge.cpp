@@ -93,7 +93,7 @@ class Judge {
   std::vector<std::string> judge() {
     if (case_.program.empty()) return {case_.path + ": no [program]"};
     if (case_.expected.empty() && case_.contained.empty() && case_.motions.empty() && case_.errors.empty() &&
-        case_.findings.empty())
+        case_.findings.empty() && case_.rs274.empty())
       return {case_.path + ": expects nothing"};
     const Outcome outcome = run(case_);
     if (!case_.errors.empty() || case_.findings.empty()) error(outcome);
