@@ -22,6 +22,9 @@ struct Setpoint {
   double velocity = 0.0;
   double acceleration = 0.0;
   double distance_to_go = 0.0;
+  /// The axis goes with something that its stop would part it from: a tap in its hole with its spindle. A
+  /// stop at the axis' own limits waits until the process rests; the process sees to it that it does.
+  bool bound = false;
 };
 
 /// One axis: feedback to position, supervision, set-point of its owner, compensation, command to the drive.
@@ -168,6 +171,7 @@ class Axis {
   // axis.cpp: the owner's set-point and the way to the drive
   void advance(double dt, image::Nanoseconds now) noexcept;
   void advance_process(double dt) noexcept;
+  bool goes_with_master() const noexcept;
   void advance_own(double dt, image::Nanoseconds now) noexcept;
   void advance_homing(double dt) noexcept;
   void advance_manual(image::Nanoseconds now) noexcept;

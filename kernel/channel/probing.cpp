@@ -1,11 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/channel/probing.hpp"
 
+#include <cmath>
+
 namespace servogate::channel {
 
 void Probing::arm() noexcept {
+  forget();
   armed_ = true;
-  touched_ = known_ = false;
+}
+
+void Probing::disarm(std::uint32_t own) noexcept {
+  own_ = own;
+  rest_ = newest().actual;
+  beyond_ = touched_ ? distance(at_) : 0.0;
+  awaits_ = touched_;
+  away_ = stuck_s_ = 0.0;
+  armed_ = touched_ = known_ = false;
+}
+
+double Probing::distance(const std::array<double, image::kMaxAxes>& from) const noexcept {
+  double square = 0.0;
+  for (std::size_t a = 0; a < from.size(); ++a) {
+    const double d = newest().actual[a] - from[a];
+    if ((own_ >> a & 1u) != 0) square += d * d;
+  }
+  return std::sqrt(square);
 }
 
 void Probing::look(const image::ProcessImage& image, std::span<const axis::Axis> axes) noexcept {
@@ -16,22 +36,42 @@ void Probing::look(const image::ProcessImage& image, std::span<const axis::Axis>
   place.t_ns = image.now.t_ns - image.now.period_ns;
   for (std::size_t a = 0; a < axes.size() && a < place.actual.size(); ++a) place.actual[a] = axes[a].actual();
   if (count_ < kKept) ++count_;
+  take_edges(image);
+  watch_release(image.now.period_s());
+  if (touched_ && !known_) find();
+}
 
-  const bool before = deflected_;
+/// Several edges may come in one cycle: the first one into deflection is the touch.
+void Probing::take_edges(const image::ProcessImage& image) noexcept {
+  const bool before = deflected_, rested = settled_ && !before;
   image::Nanoseconds when = image.now.t_ns - image.now.period_ns;
   deflected_ = image.packets.bit(place_->place) != place_->inverted;
-  edge_ = deflected_ && !before;
+  bool met = deflected_ && !before, changed = deflected_ != before, timed = false;
   for (const image::Edge& e : image.edges.list()) {
-    if (!(e.place == place_->place) || e.level == place_->inverted) continue;
+    if (!(e.place == place_->place)) continue;
+    changed = true;
+    if (e.level == place_->inverted || timed) continue;
     when = e.t_ns;
-    edge_ = true;
-    break;
+    met = timed = true;
   }
-  if (edge_ && armed_ && !touched_) {
+  edge_ = met && rested;
+  quiet_s_ = changed ? 0.0 : quiet_s_ + image.now.period_s();
+  settled_ = quiet_s_ >= kBounce;
+  if (met && armed_ && !touched_) {
     touched_ = true;
     touch_ns_ = when;
   }
-  if (touched_ && !known_) find();
+}
+
+void Probing::watch_release(double dt) noexcept {
+  if (!awaits_) return;
+  if (!deflected_) {
+    awaits_ = !settled_;
+    stuck_s_ = 0.0;
+    return;
+  }
+  away_ = distance(rest_);
+  stuck_s_ = away_ > beyond_ + kRelease ? stuck_s_ + dt : 0.0;
 }
 
 /// Between the two cycles around the touch; it waits for the later one.

@@ -214,7 +214,7 @@ void Process::drive_axes(const path::Sample& sample, cycle::ProcessContext& c) n
     const std::size_t i = own.path;
     if (a.owner() == image::AxisOwner::process)
       a.set_process({sample.position[i], sample.velocity[i], sample.acceleration[i],
-                     sample.target[i] - sample.position[i]});
+                     sample.target[i] - sample.position[i], sample.master.bound});
   }
 }
 

@@ -159,7 +159,7 @@ TEST(TapProgram, goes_to_its_depth_with_the_spindle_and_back_and_the_spindle_tur
               rig.process->tap_overshoot());
   EXPECT_TRUE(reversed) << "on the way out";
   EXPECT_NEAR(deepest, -15.0, 0.75);
-  EXPECT_NEAR(std::max(0.0, -15.0 - deepest), rig.process->tap_overshoot(), 1e-6);
+  EXPECT_NEAR(-15.0 - deepest, rig.process->tap_overshoot(), 1e-6);
   EXPECT_NEAR(rig.x(0), 10.0, 1e-6);
   EXPECT_EQ(rig.violations(), "");
 }

@@ -36,6 +36,10 @@ mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::S
     if (extra->friction_coulomb > 0.0) p.coulomb_friction_nm = extra->friction_coulomb;
     if (extra->friction_viscous > 0.0) p.viscous_friction_nm_s = extra->friction_viscous;
     if (extra->max_torque > 0.0) p.peak_torque_nm = extra->max_torque;
+    p.dip_torque_nm = extra->dip_torque;
+    p.dip_period_s = extra->dip_period;
+    p.dip_time_s = extra->dip_time;
+    p.encoder_noise_counts = extra->encoder_noise;
     if (axis != nullptr) {
       const double direction = axis->direction == machine::Direction::plus ? 1.0 : -1.0;
       p.load_torque_nm = extra->gravity_torque * direction;
