@@ -334,8 +334,11 @@ void Axis::write_drive(image::ProcessImage& image, const PowerSequence::Outputs&
   out.torque_permille = torque_.command() * 10.0 * scale_.direction;
   out.halt = led.wants_halt();
   out.quick_stop = out.quick_stop || led.wants_quick_stop();
-  out.latch_source = image::LatchSource::zero_mark;
-  out.latch_arm = homing_.latch_arm();
+  // Homing looks for the zero mark; nobody measures meanwhile.
+  const bool probes = probe_armed_ && !homing_.latch_arm();
+  out.latch_source = probes ? probe_source_ : image::LatchSource::zero_mark;
+  out.latch_negative = probes && probe_negative_;
+  out.latch_arm = probes || homing_.latch_arm();
   out.position_counts = held_ ? scale_.counts(set_.x + compensation_value_) : drive_.position_counts;
   out.velocity_counts_s = held_ ? scale_.velocity_counts(set_.v) : 0.0;
   if (config_.brake.output == BrakeOutput::place)

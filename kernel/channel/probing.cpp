@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/channel/probing.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace servogate::channel {
 
-void Probing::arm() noexcept {
+void Probing::arm(std::uint32_t own) noexcept {
   forget();
+  own_ = own;
   armed_ = true;
+  unlatched_ = -1;
+  latch_wait_s_ = 0.0;
 }
 
-void Probing::disarm(std::uint32_t own) noexcept {
-  own_ = own;
+void Probing::disarm() noexcept {
   rest_ = newest().actual;
   beyond_ = touched_ ? distance(at_) : 0.0;
   awaits_ = touched_;
   away_ = stuck_s_ = 0.0;
-  armed_ = touched_ = known_ = false;
+  armed_ = touched_ = known_ = found_ = false;
 }
 
 double Probing::distance(const std::array<double, image::kMaxAxes>& from) const noexcept {
@@ -38,7 +41,33 @@ void Probing::look(const image::ProcessImage& image, std::span<const axis::Axis>
   if (count_ < kKept) ++count_;
   take_edges(image);
   watch_release(image.now.period_s());
-  if (touched_ && !known_) find();
+  if (armed_ && latch_) take_latches(axes, image.now.period_s());
+  if (touched_ && !found_) find();
+  if (!latch_) known_ = found_;
+}
+
+/// Where each axis was is what its drive has latched. One that stood needs no latch; one that moved and has
+/// none after a while is not known.
+void Probing::take_latches(std::span<const axis::Axis> axes, double dt) noexcept {
+  constexpr double kStands = 0.002;  // mm between the touch and its rest
+  int latched = 0, missing = -1;
+  for (std::size_t a = 0; a < axes.size() && a < at_.size(); ++a) {
+    if ((own_ >> a & 1u) == 0) continue;
+    if (axes[a].probe_latched()) {
+      ++latched;
+      if (!touched_) touch_ns_ = newest().t_ns;
+      touched_ = true;
+    } else if (found_ && std::abs(newest().actual[a] - at_[a]) > kStands) {
+      missing = static_cast<int>(a);
+    }
+  }
+  if (!touched_ || !found_ || known_) return;
+  latch_wait_s_ += dt;
+  if (latch_wait_s_ > kLatchPatience && (latched == 0 || missing >= 0)) unlatched_ = std::max(0, missing);
+  if (latched == 0 || missing >= 0) return;
+  for (std::size_t a = 0; a < axes.size() && a < at_.size(); ++a)
+    if ((own_ >> a & 1u) != 0 && axes[a].probe_latched()) at_[a] = axes[a].probe_position();
+  known_ = true;
 }
 
 /// Several edges may come in one cycle: the first one into deflection is the touch.
@@ -87,7 +116,7 @@ void Probing::find() noexcept {
   const double z = between > 0.0 ? static_cast<double>(touch_ns_ - before.t_ns) / between : 1.0;
   for (std::size_t a = 0; a < at_.size(); ++a)
     at_[a] = before.actual[a] + z * (after.actual[a] - before.actual[a]);
-  known_ = true;
+  found_ = true;
 }
 
 }  // namespace servogate::channel

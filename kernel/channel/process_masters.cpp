@@ -40,6 +40,7 @@ bool always_told(path::MasterFault fault) noexcept {
 
 constexpr double kProbeLate = 0.01;  // s in which a touch at the end of its motion may still come
 constexpr double kProbeCalms = 1.0;  // s
+constexpr double kProbeArms = 0.1;   // s in which a drive surely has its order to latch
 
 }  // namespace
 
@@ -63,13 +64,13 @@ path::MasterReading Process::master(const cycle::ProcessContext& c) const noexce
 }
 
 /// About the block in motion.
-void Process::raise_of_motion(image::AlarmNumber number, double value, double limit,
-                              cycle::ProcessContext& c) noexcept {
+void Process::raise_of_motion(image::AlarmNumber number, double value, double limit, cycle::ProcessContext& c,
+                              int axis) noexcept {
   Event at;
   at.line = shown_.line;
   at.file = static_cast<std::int16_t>(shown_.file);
   at.block = shown_.block;
-  raise(number, at, value, limit, c);
+  raise(number, at, value, limit, c, axis);
 }
 
 void Process::follow_master(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
@@ -134,10 +135,16 @@ bool Process::passes_mark(const Event& e, cycle::ProcessContext& c) noexcept {
 
 /// False: the path does not go on. A probe that has just come free may still bounce.
 bool Process::arm_probe(const Event& e, cycle::ProcessContext& c) noexcept {
-  if (stage_ == Stage::entered) waited_s_ = 0.0;
+  if (stage_ == Stage::entered) {
+    waited_s_ = 0.0;
+    if (probing_.latch())
+      for (const OwnAxis& own : own_axes())
+        c.axes[own.machine].arm_probe(*probing_.latch(), probing_.inverted());
+  }
   stage_ = Stage::waiting;
   if (probe_told_) return false;
   waited_s_ += seconds(c);
+  if (probing_.latch() && waited_s_ < kProbeArms) return false;
   const bool bounces = probing_.present() && !probing_.settled();
   if (bounces && waited_s_ < kProbeCalms) return false;
   if (!probing_.present() || probing_.deflected() || bounces) {
@@ -145,8 +152,18 @@ bool Process::arm_probe(const Event& e, cycle::ProcessContext& c) noexcept {
     probe_told_ = true;
     return false;
   }
-  probing_.arm();
+  probing_.arm(own_mask());
   return true;
+}
+
+std::uint32_t Process::own_mask() const noexcept {
+  std::uint32_t mask = 0;
+  for (const OwnAxis& own : own_axes()) mask |= std::uint32_t{1} << own.machine;
+  return mask;
+}
+
+void Process::disarm_drives(cycle::ProcessContext& c) noexcept {
+  for (const OwnAxis& own : own_axes()) c.axes[own.machine].disarm_probe();
 }
 
 /// At the end of a measuring motion: a touch in the cycle of the arrival is one, and its edge may come later.
@@ -180,7 +197,13 @@ void Process::watch_probe(const path::Sample& sample, cycle::ProcessContext& c) 
   if (!probing_.armed()) return watch_idle_probe(sample, c);
   if (!probing_.touched()) return;
   if (sample.state != path::FollowerState::stopped) return follower_.stop();
-  if (!probing_.known()) return;
+  if (!probing_.known()) {
+    if (probing_.unlatched() >= 0 && !probe_told_) {
+      raise_of_motion(alarm::kProbeNotLatched, 0.0, Probing::kLatchPatience, c, probing_.unlatched());
+      probe_told_ = true;
+    }
+    return;
+  }
   // The event of the end that was not reached goes; one that had begun ends.
   if (stage_ != Stage::none && event_.kind == EventKind::probe_end)
     stage_ = Stage::none;
@@ -192,14 +215,11 @@ void Process::watch_probe(const path::Sample& sample, cycle::ProcessContext& c) 
   order.kind = FeederOrder::Kind::probed;
   order.generation = generation_;
   for (std::size_t a = 0; a < c.axes.size(); ++a) order.position[a] = c.image.axes[a].command;
-  std::uint32_t own_axes_of_path = 0;
-  for (const OwnAxis& own : own_axes()) {
-    order.position[own.machine] = sample.position[own.path];
-    own_axes_of_path |= std::uint32_t{1} << own.machine;
-  }
+  for (const OwnAxis& own : own_axes()) order.position[own.machine] = sample.position[own.path];
   order.touched = probing_.at();
   link_.orders.push(order);
-  probing_.disarm(own_axes_of_path);
+  probing_.disarm();
+  disarm_drives(c);
 }
 
 }  // namespace servogate::channel

@@ -127,6 +127,7 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   forget_neighbours();
   state_ = state;
   stage_ = Stage::none;
+  disarm_drives(c);
   handshake_.cancel(c.image, base_);
   if (state != ProcessState::ended) {
     follower_.stop();

@@ -17,6 +17,12 @@ std::span<const std::string_view> choices_of<ThreadSide>() {
 }
 
 template <>
+std::span<const std::string_view> choices_of<ProbeLatch>() {
+  static constexpr std::string_view kNames[] = {"edge", "drive-1", "drive-2"};
+  return kNames;
+}
+
+template <>
 std::span<const std::string_view> choices_of<MachineKind>() {
   static constexpr std::string_view kNames[] = {"by_axes", "turning", "milling"};
   return kNames;
@@ -85,6 +91,14 @@ const Section& section_of<ControlConfig>() {
           "known to the time of its edge, without it to a cycle",
           "вход щупа, TRUE, пока он отклонён; при `edges` точки касание известно с точностью "
           "времени фронта, без него — с точностью такта"),
+      key<&C::probe_latch>("probe_latch", {},
+                           "what tells where the probe touched: the edge of `probe`, or the touch probe of "
+                           "the axes' drives, to "
+                           "whose input 1 or 2 it is wired besides (60B8h); an axis that moves and has not "
+                           "latched is alarm 4116",
+                           "что сообщает положение касания: фронт `probe` или защёлка приводов осей, к входу "
+                           "1 или 2 которых щуп "
+                           "подключён дополнительно (60B8h); движущаяся ось без защёлки — авария 4116"),
       key<&C::tool_places>("tool_places", {.min = 0, .max = 9999},
                            "places of the magazine or turret, T takes 0 to this number; 0: any T",
                            "мест в магазине или револьверной головке, T — от 0 до этого числа; 0: любой T"),

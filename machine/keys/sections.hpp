@@ -12,6 +12,8 @@ std::span<const std::string_view> choices_of<ArcFeed>();
 template <>
 std::span<const std::string_view> choices_of<ThreadSide>();
 template <>
+std::span<const std::string_view> choices_of<ProbeLatch>();
+template <>
 std::span<const std::string_view> choices_of<AxisType>();
 template <>
 std::span<const std::string_view> choices_of<MachineKind>();

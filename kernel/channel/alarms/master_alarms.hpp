@@ -23,5 +23,6 @@ inline constexpr AlarmNumber kProbeStuck = 4112;
 inline constexpr AlarmNumber kProbeMissed = 4113;
 inline constexpr AlarmNumber kProbeInRapid = 4114;
 inline constexpr AlarmNumber kProbeNotFree = 4115;
+inline constexpr AlarmNumber kProbeNotLatched = 4116;
 
 }  // namespace servogate::channel::alarm

@@ -194,6 +194,16 @@ inline constexpr image::AlarmRow kProgramRows[] = {
      "the probe, and at the way on which the program leaves the part.",
      "Следующее касание осталось бы незамеченным. Проверьте щуп, батарею, приёмник и проводку, а также путь, "
      "которым программа отходит от детали."},
+    {alarm::kProbeNotLatched,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"probe.not_latched", "{9}: the drive of {0} has not latched the touch within {2} s",
+      "{9}: привод {0} не защёлкнул касание за {2} с"},
+     "Wire the probe to the probe input of the drive of each axis that measures, and see whether the drive "
+     "has "
+     "60B8h; or take the edge of the input instead (probe_latch).",
+     "Подключите щуп к входу щупа привода каждой измеряющей оси и проверьте, есть ли у привода 60B8h; либо "
+     "используйте фронт входа (probe_latch)."},
 };
 
 }  // namespace servogate::channel

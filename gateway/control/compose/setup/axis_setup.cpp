@@ -271,6 +271,9 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
   c.path.threads.by_infeed = m.control.thread_retract_side == machine::ThreadSide::infeed;
   c.path.threads.tap_overshoot = m.control.tap_overshoot;
   c.probe = switch_place(m, m.control.probe);
+  if (m.control.probe_latch != machine::ProbeLatch::edge)
+    c.probe_latch = m.control.probe_latch == machine::ProbeLatch::drive_1 ? image::LatchSource::probe_1
+                                                                          : image::LatchSource::probe_2;
   c.path.axis_count = std::min<int>(static_cast<int>(m.program_axes()), path::kMaxAxes);
   for (int i = 0; i < c.path.axis_count; ++i) {
     const machine::AxisConfig& a = m.axes[static_cast<std::size_t>(i)];

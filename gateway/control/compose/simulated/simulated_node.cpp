@@ -85,6 +85,24 @@ void put_maps(const machine::DeviceConfig& device, mock::SimulatedDriveConfig& d
     }
 }
 
+/// The probe on an input of the drive, where its axis takes it to the part.
+void put_probe(const machine::MachineConfig& m, const machine::AxisConfig& axis,
+               mock::SimulatedDriveConfig& drive) {
+  if (m.control.probe_latch == machine::ProbeLatch::edge) return;
+  const double counts = static_cast<double>(drive.plant.counts_per_rev) / units_per_revolution(axis);
+  for (const machine::SimulatedSwitch& s : m.simulation.switches) {
+    if (s.point != m.control.probe || s.axis != axis.letter) continue;
+    mock::DriveSwitch input;
+    input.input = m.control.probe_latch == machine::ProbeLatch::drive_1 ? mock::DriveSwitch::Input::probe_1
+                                                                        : mock::DriveSwitch::Input::probe_2;
+    const bool falls = counts < 0.0;
+    const double from = falls ? s.to : s.from, to = falls ? s.from : s.to;
+    if (std::isfinite(from)) input.from = static_cast<std::int64_t>(std::ceil(from * counts));
+    if (std::isfinite(to)) input.to = static_cast<std::int64_t>(std::floor(to * counts));
+    drive.switches.push_back(input);
+  }
+}
+
 template <class Config>
 void put_name_plate(const machine::DeviceConfig& device, int node, Config& config) {
   config.node_id = static_cast<canopen::NodeId>(node);
@@ -163,6 +181,7 @@ mock::SimulatedDriveConfig simulated_node(const machine::LoadResult& loaded, con
   if (!node.program.empty() || node.program_version >= 0) drive.program_memory = std::size_t{1} << 20;
   if (extra != nullptr) drive.absolute_encoder = extra->absolute_encoder;
   drive.plant = plant_of(device, extra, axis, spindle);
+  if (axis != nullptr) put_probe(m, *axis, drive);
   return drive;
 }
 
