@@ -486,6 +486,28 @@ TEST(ProbeProgram, whose_touch_is_told_in_the_cycle_of_its_end_or_just_behind_ha
   }
 }
 
+TEST(ProbeProgram, knows_where_its_drives_have_latched_the_touch) {
+  Rig rig("(DPT,10,12,600)\nG72 X40 Z-30 E30\n(DIS,E30,E31)\nM30\n", "G27", 0.5, RigKind::latching);
+  rig.drives.edges = false;
+  rig.drives.clearance = [](const std::array<double, kAxes>& at) { return at[2] + 30.4321; };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  double x = 0.0, z = 0.0;
+  ASSERT_EQ(std::sscanf(message(rig).c_str(), "E30=%lf E31=%lf", &x, &z), 2) << message(rig);
+  EXPECT_NEAR(z, -30.4321, 1e-4) << "to the count, from an input that is known to a cycle";
+  EXPECT_NEAR(x, 40.0 * 30.4321 / 30.0, 1e-4);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ProbeProgram, whose_moving_axis_has_no_latch_ends_with_an_alarm_that_names_it) {
+  Rig rig("(DPT,10,12,600)\nG72 X40 Z-30 E30\nM30\n", "G27", 0.5, RigKind::latching);
+  rig.drives.clearance = [](const std::array<double, kAxes>& at) { return at[2] + 30.4321; };
+  rig.drives.latches[0] = false;
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kProbeNotLatched), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.alarm(alarm::kProbeNotLatched)->axis, 0);
+}
+
 TEST(ProbeProgram, whose_probe_stays_deflected_behind_the_touch_stops_with_an_alarm) {
   Rig rig(kTouch);
   rig.drives.surface_at(-49.0);

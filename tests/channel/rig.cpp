@@ -78,6 +78,19 @@ void IdealDrives::probe(image::ProcessImage& image) {
   const bool level = (clear <= 0.0) != bounces, was = image.packets.bit(kProbePlace);
   image.packets.set_bit(kProbePlace, level);
   if (edges && since_edge_ > 0 && level != was) image.edges.add({kProbePlace, level, image.now.t_ns});
+  const double share = before / (before - clear);
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    const image::DriveCommand& told = commands_[i];
+    image::DriveFeedback& f = image.axes[i].drive;
+    const bool armed = told.latch_arm && told.latch_source == image::LatchSource::probe_1;
+    if (!armed) latched_[i] = false;
+    if (!armed || latched_[i] || !latches[i] || clear > 0.0 || before <= 0.0) continue;
+    latched_[i] = true;
+    ++f.latch_sequence;
+    f.latch_counts =
+        counts_before_[i] + std::llround(share * static_cast<double>(counts_[i] - counts_before_[i]));
+  }
+  counts_before_ = counts_;
   if (!edges || clear > 0.0 || before <= 0.0) return;
   const auto ago = static_cast<image::Nanoseconds>((2.0 - before / (before - clear)) *
                                                    static_cast<double>(image.now.period_ns));
@@ -150,6 +163,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   ProcessConfig config;
   config.path.axis_count = kAxes;
   if (kind != RigKind::blind) config.probe = axis::SwitchPlace{kProbePlace, false};
+  if (kind == RigKind::latching) config.probe_latch = image::LatchSource::probe_1;
   config.path.threads.hold_retracts = kind == RigKind::retracting;
   config.path.threads.retract = {2.0, 0.0, 0.0};
   config.path.threads.by_infeed = kind == RigKind::infeed;

@@ -37,13 +37,15 @@ class IdealDrives final : public image::CycleDevice {
   void surface_at(double z) {
     clearance = [z](const std::array<double, kAxes>& at) { return at[2] - z; };
   }
-  bool edges = true;      ///< its input tells its edges with times
+  bool edges = true;                                  ///< its input tells its edges with times
+  std::array<bool, kAxes> latches{true, true, true};  ///< drives whose input 1 it is wired to, too
   int bounce_cycles = 0;  ///< so long its contacts close and open every second cycle behind an edge
 
  private:
   std::array<std::array<std::int64_t, 2>, kAxes> pipe_{};
   std::array<image::DriveCommand, kAxes> commands_{};
-  std::array<std::int64_t, kAxes> counts_{};
+  std::array<bool, kAxes> latched_{};
+  std::array<std::int64_t, kAxes> counts_{}, counts_before_{};
   void probe(image::ProcessImage& image);
   double clear_before_ = 0.0, slipped_ = 0.0;
   int since_edge_ = 1000000;
@@ -88,8 +90,8 @@ class TestLogic final : public image::Logic {
 /// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B; or
 /// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
 /// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
-/// Or one whose tool leaves a thread to where it came from.
-enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed };
+/// Or one whose tool leaves a thread to where it came from. Or one whose drives latch the touch.
+enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed, latching };
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.

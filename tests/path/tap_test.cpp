@@ -153,6 +153,28 @@ TEST(Tap, whose_spindle_stands_on_the_way_out_is_given_up) {
   EXPECT_LT(m.last().position[2], -5.0) << "still in its hole";
 }
 
+TEST(Tap, whose_spindle_stands_on_the_way_in_waits_with_it_and_goes_on_with_it) {
+  Tapping m({-20.0});
+  ASSERT_TRUE(m.turn_until([](const Sample& s) { return s.master.locked && s.position[2] < -8.0; }));
+  m.spindle.wanted = 0.0;
+  for (int n = 0; n < 1500; ++n) m.turn();
+  EXPECT_EQ(m.last().master.fault, MasterFault::none);
+  EXPECT_LT(std::abs(m.spindle.w), 0.01);
+  m.spindle.wanted = 10.0;
+  ASSERT_TRUE(m.rests()) << m.why();
+  EXPECT_EQ(m.last().state, FollowerState::idle);
+  EXPECT_NEAR(-m.deepest, 20.0, 0.5);
+  EXPECT_LE(m.parted, 2.0 * phase_bound(m.spindle.quality(), kLead));
+}
+
+TEST(Tap, whose_spindle_turns_back_unasked_is_given_up) {
+  Tapping m({-20.0});
+  ASSERT_TRUE(m.turn_until([](const Sample& s) { return s.master.locked && s.position[2] < -8.0; }));
+  m.spindle.wanted = -10.0;
+  ASSERT_TRUE(m.turn_until([](const Sample& s) { return s.master.fault != MasterFault::none; }, 3000));
+  EXPECT_EQ(m.last().master.fault, MasterFault::reversed);
+}
+
 TEST(Tap, dwells_at_its_depth_with_the_spindle_standing_and_goes_back_by_the_same_angle) {
   Tapping m({-12.0}, kLead, 0.4);
   int stands = 0;

@@ -88,7 +88,7 @@ void MasterMotion::turn_at_end(double w, const MasterReading& reading) noexcept 
 
 /// A spindle that does not do what it is told to does not keep the tap for ever.
 void MasterMotion::watch_turn(double w, const MasterReading& reading) noexcept {
-  const bool stands_on_its_way = turn_ == Turn::none && leg_ > 0 && std::abs(w) < kMasterStands;
+  const bool stands_on_its_way = turn_ == Turn::none && std::abs(w) < kMasterStands;
   const bool owes = turn_ == Turn::stopping || turn_ == Turn::turning || turn_ == Turn::halting;
   turn_s_ = owes || stands_on_its_way ? turn_s_ + period_ : 0.0;
   const double patience = kTurnPatience + (reading.braking > 0.0 ? 2.0 * turn_w_ / reading.braking : 0.0);
