@@ -27,6 +27,7 @@ double wrapped(double degrees) noexcept { return degrees - 360.0 * std::round(de
 void Spindle::configure(const SpindleConfig& config, int index) {
   *this = Spindle{};
   config_ = config;
+  limit_rpm_ = config.max_rpm;
   index_ = index;
   scale_ = {config.counts_numerator, config.counts_denominator, config.count_direction, 0, 0.0};
   if (config.inverter) inverter_.configure(*config.inverter);
@@ -63,6 +64,8 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   power_on_ = image.packets.bit(field(image::kMachineFields, "power_on", image::kMachineBase));
   enable_ = power_on_ && image.packets.bit(image::at(field(kSpindleFields, "enable"), base));
   const double percent = image.packets.number(image::at(field(kSpindleFields, "override"), base));
+  const double limit = image.packets.number(image::at(field(kSpindleFields, "limit"), base));
+  limit_rpm_ = limit > 0.0 ? std::min(limit, config_.max_rpm) : config_.max_rpm;
   override_ratio_ = percent > 0.0 ? std::clamp(percent, 50.0, 125.0) / 100.0 : 1.0;
 
   const auto wish =
@@ -158,7 +161,7 @@ double Spindle::orient_rpm() noexcept {
 /// Signed speed of the order with its override, whatever the PLC permits.
 double Spindle::ordered_speed() const noexcept {
   if ((mode_ != SpindleMode::cw && mode_ != SpindleMode::ccw) || ordered_rpm_ == 0.0) return 0.0;
-  const double most = gears_.max_rpm(config_.max_rpm);
+  const double most = std::min(gears_.max_rpm(config_.max_rpm), limit_rpm_);
   const double rpm = std::clamp(ordered_rpm_ * override_ratio_, std::min(config_.min_rpm, most), most);
   return mode_ == SpindleMode::cw ? rpm : -rpm;
 }

@@ -30,6 +30,9 @@ struct SpindleAngle {
 /// lost; then the order is stop, and nothing turns again unasked. The same order is given when a drive with a
 /// source of its own is lost or in fault; whether that spindle stands is not known then.
 ///
+/// S.limit of the PLC bounds the speed whatever is ordered (the chuck and the work in it), at once and by the
+/// ramp.
+///
 /// With gear ranges an order to turn chooses the gear (the PLC by S.gear_wish, otherwise the slowest that
 /// reaches the speed); another one than that in force brings the spindle to rest, or to its speed for
 /// changing, changes, and then turns. A speed that is only adjusted stays within the gear. A gear that is not
@@ -106,6 +109,7 @@ class Spindle {
   image::AlarmNumber cannot_ = 0;  ///< why the last order was none for this spindle
   bool enable_ = false;
   double override_ratio_ = 1.0;
+  double limit_rpm_ = 0.0;  ///< of the machine, or the PLC's below it
   double command_rpm_ = 0.0;
   double actual_rpm_ = 0.0;
   double angle_deg_ = 0.0;

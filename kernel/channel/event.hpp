@@ -18,7 +18,6 @@ enum class EventKind : std::uint8_t {
   write,
   wait,
   spindle_mark,  ///< until spindle `number` passes its zero mark
-  tap,           ///< the spindle is turned `mode` at `value` rpm where the tap that follows asks for it
   probe_arm,     ///< the motion that follows ends where the probe touches
   probe_end,     ///< and did not touch
   message,

@@ -94,6 +94,7 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       if (!handshake(HandshakeWord::t, e.code, e.code2, e, c)) return false;
       c.image.processes[static_cast<std::size_t>(config_.index)].tool = static_cast<std::uint16_t>(e.code);
       row_ = e.code2;
+      probing_.forget();  // it may be put away
       return true;
     case EventKind::spindle:
       return order_spindle(e, c);
@@ -111,15 +112,10 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       return holds(c.image.packets.number(e.place), e.compare, e.value);
     case EventKind::spindle_mark:
       return passes_mark(e, c);
-    case EventKind::tap:
-      tap_ = e;
-      return true;
     case EventKind::probe_arm:
       return arm_probe(e, c);
     case EventKind::probe_end:
-      if (stage_ == Stage::entered) raise(alarm::kProbeMissed, e, 0.0, 0.0, c);
-      stage_ = Stage::waiting;
-      return false;
+      return miss_probe(e, c);
     case EventKind::message:
       c.image.processes[static_cast<std::size_t>(config_.index)].message = e.code;
       return true;

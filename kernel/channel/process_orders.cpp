@@ -111,8 +111,8 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   forget_ = false;
   stopping_ = held_ = go_on_ = false;
   forget_beside();
-  probing_.disarm();
-  master_told_ = tap_turned_ = tap_halted_ = false;
+  probing_.forget();
+  probe_told_ = master_told_ = tapping_ = tap_halted_ = false;
   stage_ = Stage::none;
   last_speed_ = -1.0;
   state_ = ProcessState::running;
@@ -127,6 +127,7 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   forget_neighbours();
   state_ = state;
   stage_ = Stage::none;
+  disarm_drives(c);
   handshake_.cancel(c.image, base_);
   if (state != ProcessState::ended) {
     follower_.stop();
