@@ -169,6 +169,9 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     parts.axes.push_back(c);
   }
   model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
+  if (kind == RigKind::iso) language_ = "sinumerik-808d", model_.power_on = {"G291"};
+  if (kind == RigKind::iso) model_.kind = program::MachineModel::Kind::milling;
+  if (kind == RigKind::fenix) language_ = "fenix", model_.power_on = {"G94", "G90"};
   model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
   process = std::make_unique<Process>(config);
   process->load(factory(program));
@@ -188,8 +191,8 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
 }
 
 InterpreterFactory Rig::factory(std::string_view program) const {
-  return [model = model_, text = std::string(program)](const program::Position& at) {
-    return program::Interpreter("nc110", model, {}, "test.nc", text, {}, at);
+  return [language = language_, model = model_, text = std::string(program)](const program::Position& at) {
+    return program::Interpreter(language, model, {}, "test.nc", text, {}, at);
   };
 }
 

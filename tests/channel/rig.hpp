@@ -82,8 +82,9 @@ class TestLogic final : public image::Logic {
 
 /// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B; or
 /// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
-/// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
-enum class RigKind { mill, lathe, rotary, lawless, blind, retracting };
+/// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread; or
+/// one whose programs speak the ISO dialect, or Fenix.
+enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, iso, fenix };
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.
@@ -129,6 +130,7 @@ class Rig {
   std::string violations_;
   InterpreterFactory factory(std::string_view program) const;
   program::MachineModel model_;
+  std::string language_ = "nc110";
   std::vector<image::AlarmRecord> history_;
   std::uint64_t next_id_ = 1;
   cycle::Refusal started_ = cycle::Refusal::none;
