@@ -13,8 +13,7 @@
 namespace servogate::program::tests {
 namespace {
 
-constexpr double kGrid = 0.02, kNear = 1e-3;  ///< mm
-constexpr double kTolerance = 2e-3;           ///< mm: numbers of programs have three decimals
+constexpr double kTolerance = 2e-3;  ///< mm: numbers of programs have three decimals
 constexpr double kDegree = 0.017453292519943295;
 
 void add_arc(std::vector<Way>& ways, const Arc& arc, Position from, int line) {
@@ -102,18 +101,18 @@ Outline Outline::shifted(double along, double out) const {
 double Outline::first() const { return std::min(points_.front().first, points_.back().first); }
 double Outline::last() const { return std::max(points_.front().first, points_.back().first); }
 
-double Outline::extreme(double a, bool highest) const {
+double Outline::extreme(double a, double near, bool highest) const {
   double found = highest ? -1e9 : 1e9;
   const auto take = [&](double r) { found = highest ? std::max(found, r) : std::min(found, r); };
   for (std::size_t i = 1; i < points_.size(); ++i) {
     const auto& p = points_[i - 1].first <= points_[i].first ? points_[i - 1] : points_[i];
     const auto& q = points_[i - 1].first <= points_[i].first ? points_[i] : points_[i - 1];
-    if (a < p.first - kNear || a > q.first + kNear) continue;
-    if (q.first - p.first < 2.0 * kNear) {
+    if (a < p.first - near || a > q.first + near) continue;
+    if (q.first - p.first < 2.0 * near) {
       take(p.second), take(q.second);
       continue;
     }
-    for (const double place : {a - kNear, a, a + kNear})
+    for (const double place : {a - near, a, a + near})
       take(p.second + (q.second - p.second) * std::clamp((place - p.first) / (q.first - p.first), 0.0, 1.0));
   }
   return found;
@@ -132,7 +131,7 @@ double Stock::height(double a) const {
 std::string Stock::take(const Stroke& s, const std::function<double(double)>& floor) {
   const double low = std::min(s.a0, s.a1), high = std::max(s.a0, s.a1);
   for (std::size_t n = 0; n < heights_.size(); ++n) {
-    const double a = from_ + static_cast<double>(n) * kGrid;
+    const double a = place(n);
     if (a < low - 1e-6 || a > high + 1e-6) continue;
     const bool upright = high - low < 1e-9;
     const double r = upright ? std::min(s.r0, s.r1) : s.r0 + (a - s.a0) / (s.a1 - s.a0) * (s.r1 - s.r0);

@@ -41,14 +41,16 @@ std::vector<Stroke> strokes(const std::vector<Way>& ways, std::size_t along, std
 class Outline {
  public:
   explicit Outline(std::vector<std::pair<double, double>> points) : points_(std::move(points)) {}
-  double lowest(double a) const { return extreme(a, false); }  ///< near `a`; 1e9 beside the contour
-  double highest(double a) const { return extreme(a, true); }  ///< near `a`; -1e9 beside the contour
+  double lowest(double a) const { return extreme(a, kNear, false); }  ///< near `a`; 1e9 beside the contour
+  /// No farther from `a` than this; -1e9 beside the contour.
+  double highest(double a, double near = kNear) const { return extreme(a, near, true); }
   Outline shifted(double along, double out) const;
   double first() const;
   double last() const;
 
  private:
-  double extreme(double a, bool highest) const;
+  static constexpr double kNear = 1e-3;  ///< mm
+  double extreme(double a, double near, bool highest) const;
   std::vector<std::pair<double, double>> points_;  ///< a, r
 };
 
@@ -59,6 +61,9 @@ class Stock {
   /// Takes a stroke away. "" or what was wrong: at rapid through material, or a cut below `floor`.
   std::string take(const Stroke& stroke, const std::function<double(double)>& floor);
   double height(double a) const;
+  const std::vector<double>& heights() const { return heights_; }
+  double place(std::size_t n) const { return from_ + static_cast<double>(n) * kGrid; }
+  static constexpr double kGrid = 0.02;  ///< mm
 
  private:
   double from_;

@@ -59,8 +59,12 @@ void expect_cut_to(Stock stock, const std::vector<Stroke>& all, const Outline& o
                    const std::string& program) {
   for (const Stroke& s : all)
     ASSERT_EQ(stock.take(s, [&](double a) { return outline.lowest(a); }), "") << program;
-  for (double a = outline.first() + 0.1; a < outline.last() - 0.1; a += 0.05)
-    ASSERT_LE(stock.height(a), outline.highest(a) + 0.1) << "at " << a << "\n" << program;
+  for (std::size_t n = 0; n < stock.heights().size(); ++n) {
+    const double a = stock.place(n);
+    if (a < outline.first() + 0.1 || a > outline.last() - 0.1) continue;
+    ASSERT_LE(stock.heights()[n], outline.highest(a, Stock::kGrid) + kTolerance) << "at " << a << "\n"
+                                                                                 << program;
+  }
 }
 
 /// A contour of lines that falls to one side: its points in the coordinates of the work, the lowest first.
@@ -110,7 +114,7 @@ void judge_stock_removal(bool along_z, bool finishes) {
         (finishes ? "G70 P10 Q" + std::to_string(c.last) + "\n" : "") + "M30\n" + c.blocks;
     const Outline whole(c.points);
     const Outline left = finishes ? whole : whole.shifted(along_z ? w : u, along_z ? u : w);
-    const double edge = left.last() - (along_z ? 0.01 : 0.01);
+    const double edge = std::min(left.last(), front) - 0.01;
     Stock stock(left.first() + 0.001, edge, [&](double) { return top; });
     const auto ways = ways_of("sinumerik-808d", iso_lathe(), program);
     ASSERT_GT(ways.size(), 2u) << program;
@@ -138,12 +142,12 @@ TEST(CycleGeometry, of_a_repeated_pattern_comes_nearer_with_each_pass_and_ends_a
     const Contour c = random_contour(random, true, 2.0);
     const double u = random.mm(0.0, 1.0), w = random.mm(0.0, 0.5), escape = random.mm(1.0, 6.0);
     const int passes = random.whole(1, 6);
-    const double start = c.points.back().second + random.mm(1.0, 6.0);
-    const std::string program = "G98 G00 X" + dia(start) + " Z3.\nG73 U" + digits(escape) + " W0 R" +
+    const double start = c.points.back().second + u + escape + random.mm(1.0, 6.0);
+    const std::string program = "G98 G00 X" + dia(start) + " Z2.\nG73 U" + digits(escape) + " W0 R" +
                                 std::to_string(passes) + "\nG73 P10 Q" + std::to_string(c.last) + " U" +
                                 dia(u) + " W" + digits(w) + " F200\nM30\n" + c.blocks;
     const Outline left = Outline(c.points).shifted(w, u);
-    Stock stock(left.first() + 0.001, left.last() - 0.01, [&](double a) { return left.highest(a) + escape; });
+    Stock stock(left.first() + 0.001, 1.99, [&](double a) { return left.highest(a) + escape; });
     const auto all = seen(ways_of("sinumerik-808d", iso_lathe(), program), true);
     double deepest = passes == 1 ? 0.0 : escape;
     int cuts = 0;
@@ -394,10 +398,13 @@ TEST(CycleGeometry, of_fine_and_back_boring_moves_only_beside_the_wall) {
     for (const Way& w : ways) {
       const double across = std::hypot(w.to[0] - w.from[0], w.to[1] - w.from[1]);
       if (w.kind == Way::Kind::cut) bottom = std::min(bottom, w.to[2]);
-      if (across > 1e-9 && std::min(w.from[2], w.to[2]) < level - 1e-9)
+      if (across > 1e-9 && std::min(w.from[2], w.to[2]) < level - 1e-9) {
         EXPECT_NEAR(across, shift, kTolerance) << fine;
+      }
       const bool out = w.kind == Way::Kind::rapid && w.to[2] > w.from[2] && w.from[2] < level - 1e-9;
-      if (out) EXPECT_NEAR(std::hypot(w.to[0] - 10.0, w.to[1] - 5.0), shift, kTolerance) << fine;
+      if (out) {
+        EXPECT_NEAR(std::hypot(w.to[0] - 10.0, w.to[1] - 5.0), shift, kTolerance) << fine;
+      }
     }
     EXPECT_NEAR(bottom, depth, kTolerance) << fine;
     EXPECT_NEAR(ways.back().to[0], 10.0, kTolerance);
@@ -473,7 +480,9 @@ TEST(CycleGeometry, of_threads_goes_down_the_flank_by_equal_chips_to_the_full_de
       const double before = i == 0 ? 0.0 : depths[i - 1], chip = depths[i] * depths[i] - before * before;
       const bool small = depths[i] - before <= least + kTolerance ||
                          i + static_cast<std::size_t>(finishing) >= depths.size();
-      if (!small) EXPECT_LE(chip, first * first + 4.0 * kTolerance) << program;
+      if (!small) {
+        EXPECT_LE(chip, first * first + 4.0 * kTolerance) << program;
+      }
     }
     for (std::size_t i = depths.size() - static_cast<std::size_t>(finishing); i < depths.size(); ++i)
       EXPECT_NEAR(depths[i], depth, kTolerance) << program;

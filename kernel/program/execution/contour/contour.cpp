@@ -291,18 +291,25 @@ void Contour::pass(const ContourElement& first, const ContourElement& second, bo
 
 namespace {
 
-/// A place well inside of a way: ends touch one another in a closed contour.
-bool inside(const WatchedCommand& way, Point place) {
+enum class On : std::uint8_t { no, end, inside };
+
+On where(const WatchedCommand& way, Point place) {
   constexpr double kEnd = 1e-3;  // mm
-  if (distance(place, way.from) < kEnd || distance(place, way.to) < kEnd) return false;
+  if (distance(place, way.from) < kEnd || distance(place, way.to) < kEnd) return On::end;
   if (way.sweep_deg == 0.0) {
     const Point all = plus(way.to, way.from, -1.0);
     const double share = dot(plus(place, way.from, -1.0), all) / dot(all, all);
-    return share > 0.0 && share < 1.0;
+    return share > 0.0 && share < 1.0 ? On::inside : On::no;
   }
   double angle = ahead(way.way.centre, way.from, place);
   if (angle * way.sweep_deg < 0.0) angle += std::copysign(360.0, way.sweep_deg);
-  return std::abs(angle) < std::abs(way.sweep_deg);
+  return std::abs(angle) < std::abs(way.sweep_deg) ? On::inside : On::no;
+}
+
+/// Ends that touch one another do not count: a closed contour has them.
+bool cross_at(const WatchedCommand& one, const WatchedCommand& other, Point place) {
+  const On a = where(one, place), b = where(other, place);
+  return a != On::no && b != On::no && (a == On::inside || b == On::inside);
 }
 
 }  // namespace
@@ -326,7 +333,7 @@ void Contour::watch(const ContourElement& e, Point end, double sweep_deg) {
     if (!way.element || behind-- <= 0) continue;
     const AtMostTwo<Point> meeting = common_points(way.way, next.way);
     for (int i = 0; i < meeting.count; ++i)
-      if (inside(way, meeting[i]) && inside(next, meeting[i]))
+      if (cross_at(way, next, meeting[i]))
         fail_at(Fault::contour_bottleneck, e.place,
                 {millimetres(std::abs(state_.left)), std::to_string(way.command.line)});
   }

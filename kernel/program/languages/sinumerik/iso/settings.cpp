@@ -96,9 +96,11 @@ const Setting* row_of(std::string_view name) {
 template <std::size_t I>
 void check(Execution& run, double value, int, int column) {
   const Setting& row = kSettings[I];
-  if (row.ends_alone && value != row.least && value != row.most)
+  const bool alone = row.least == row.most;
+  if ((row.ends_alone || alone) && value != row.least && value != row.most)
     fail(Wrong::setting_choice, column,
-         {row.name, text::number(value), text::number(row.least) + ", " + text::number(row.most)});
+         {row.name, text::number(value),
+          alone ? text::number(row.least) : text::number(row.least) + ", " + text::number(row.most)});
   if (row.also != nullptr) row.also(run, value);
   if (!(value >= row.least && value <= row.most))
     fail(Fault::variable_range, column,
