@@ -36,7 +36,7 @@ program::OperatorSwitches switches_of(const image::Packets& packets, int process
 /// What was cut before it is not what the machine would cut now.
 bool bars(EventKind kind) {
   return kind == EventKind::tool || kind == EventKind::spindle || kind == EventKind::m_function ||
-         kind == EventKind::h_function;
+         kind == EventKind::h_function || kind == EventKind::feed_override;
 }
 
 bool stops(const program::Command& command) {

@@ -199,7 +199,7 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   else
     follower_.resume();
   const double by_plc = k.number(at(kFeedOverride, base_)) / 100.0;
-  follower_.set_override(by_plc > 0.0 ? by_plc : override_);
+  follower_.set_override(!override_effective_ ? 1.0 : by_plc > 0.0 ? by_plc : override_);
   const axis::Spindle* turns = spindle(0, c);
   follower_.set_spindle(
       turns == nullptr

@@ -52,6 +52,8 @@ axis::SpindleMode spindle_mode(program::SpindleMode mode) noexcept {
       return axis::SpindleMode::ccw;
     case program::SpindleMode::orient:
       return axis::SpindleMode::orient;
+    case program::SpindleMode::turn:
+      return axis::SpindleMode::turn;
     default:
       return axis::SpindleMode::stop;
   }
@@ -132,6 +134,9 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
     case EventKind::window:
       if (axis::Axis& a = c.axes[e.number]; a.process() == config_.index) a.set_in_position_window(e.value);
       return true;
+    case EventKind::feed_override:
+      override_effective_ = e.flag;
+      return true;
     case EventKind::process_start:
       return start_other(e, c);
     case EventKind::process_release:
@@ -190,6 +195,12 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
   axis::Spindle* told = this->spindle(e.number, c);
   if (told == nullptr) return true;
   axis::Spindle& spindle = *told;
+  if (e.mode == program::SpindleMode::turn) {
+    if (stage_ == Stage::entered) spindle.turn(e.angle, e.value);
+    surface_speed_ = 0.0;
+    stage_ = Stage::waiting;
+    return spindle.oriented();
+  }
   if (stage_ == Stage::entered) {
     surface_spindle_ = e.number;
     surface_speed_ = e.flag ? e.value : 0.0;

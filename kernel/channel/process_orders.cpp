@@ -109,6 +109,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   status.run = generation_;
   status.typed = manual_data_;
   forget_ = false;
+  override_effective_ = true;
   stopping_ = held_ = go_on_ = false;
   forget_beside();
   probing_.forget();
@@ -122,6 +123,7 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
 
 void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   running_ = stopping_ = held_ = false;
+  override_effective_ = true;
   for (const OwnAxis& own : own_axes()) c.axes[own.machine].set_in_position_window(0.0);
   forget_beside();
   forget_neighbours();

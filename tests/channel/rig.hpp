@@ -90,8 +90,9 @@ class TestLogic final : public image::Logic {
 /// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B; or
 /// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
 /// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
-/// Or one whose tool leaves a thread to where it came from. Or one whose drives latch the touch.
-enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed, latching };
+/// Or one whose tool leaves a thread to where it came from. Or one whose drives latch the touch. Or one whose
+/// programs speak the ISO dialect, or Fenix.
+enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed, latching, iso, fenix };
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.
