@@ -301,8 +301,7 @@ void add_compare(CLI::App& bench, BenchCompareOptions& o) {
 void add_latency(CLI::App& app, LatencyOptions& o) {
   CLI::App& c = *app.add_subcommand(
       "latency", "Measures how exactly this computer keeps a cycle, and says what would make it better.");
-  c.add_option("BUS", o.bus,
-               "Url of a bus whose SYNC is measured, too; or a simulated machine.toml: its cycle by phases");
+  c.add_option("BUS", o.bus, "Url of a bus whose SYNC is measured, too");
   c.add_option("NODE", o.node, "Drive on it that answers with process data; it gets no power")
       ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
   c.add_option("--cycle", o.cycle_us, "Cycle in us, 100 to 20000")

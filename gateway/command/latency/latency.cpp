@@ -11,7 +11,6 @@
 #include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/latency/cyclictest.hpp"
-#include "gateway/command/latency/machine_cycle.hpp"
 #include "gateway/command/latency/this_computer.hpp"
 #include "gateway/command/latency/wake_up.hpp"
 #include "report/report.hpp"
@@ -33,10 +32,6 @@ const text::Entry kRefused{"latency.refused", "the system refused {0} ({1}): {2}
                            "система отказала: {0} ({1}): {2}"};
 const text::Entry kAdvice{"latency.advice", "{0}: {1}", "{0}: {1}"};
 const text::Entry kMissed{"latency.missed", "{0} of {1} cycles were missed", "пропущено циклов: {0} из {1}"};
-const text::Entry kPhase{"latency.phase", "  {0}: median {1} us, 99 % {2} us, 99.9 % {3} us, worst {4} us",
-                         "  {0}: медиана {1} мкс, 99 % {2} мкс, 99,9 % {3} мкс, наихудшее {4} мкс"};
-const text::Entry kMachine{"latency.machine", "{0}, a cycle of {1} us; its axes stand, its PLC runs",
-                           "{0}, цикл {1} мкс; оси стоят, ПЛК работает"};
 const text::Entry kNode{"latency.node", "BUS needs the number of a node behind it",
                         "после ШИНЫ нужен номер узла"};
 
@@ -54,25 +49,6 @@ std::string fit_words(Fit fit) {
   }
   return text::both("no: the worst wake-up takes more than half of it",
                     "нет: наихудшее пробуждение занимает больше половины");
-}
-
-std::string machine_fit_words(Fit fit) {
-  switch (fit) {
-    case Fit::good:
-      return fit_words(fit);
-    case Fit::doubtful:
-      return text::both(
-          "doubtful: its latest beginning with its longest work takes more than four fifths of it, or waking "
-          "up a fifth",
-          "сомнительно: самое позднее начало с самой долгой работой занимает больше четырёх пятых, или "
-          "пробуждение — пятой части");
-    case Fit::no:
-      break;
-  }
-  return text::both(
-      "no: its latest beginning with its longest work takes more than all of it, or waking up half",
-      "нет: самое позднее начало с самой долгой работой не умещается, или пробуждение занимает больше "
-      "половины");
 }
 
 void say(const text::Entry& entry, const std::vector<std::string>& arguments) {
@@ -93,13 +69,9 @@ json histogram_json(const report::Histogram& h) {
           {"p999_us", q.p999},  {"max_us", q.max}, {"bands", bands_of(h)}};
 }
 
-void print_quantiles(const text::Entry& entry, const std::string& name, const json& h) {
-  const auto number = [&](const char* key) { return text::number(h[key].get<double>(), 1); };
-  say(entry, {name, number("p50_us"), number("p99_us"), number("p999_us"), number("max_us")});
-}
-
 void print_histogram(const std::string& name, const json& h) {
-  print_quantiles(kHead, name, h);
+  const auto number = [&](const char* key) { return text::number(h[key].get<double>(), 1); };
+  say(kHead, {name, number("p50_us"), number("p99_us"), number("p999_us"), number("max_us")});
   const double all = std::max(1.0, h["count"].get<double>());
   for (const json& band : h["bands"]) {
     const double count = band["count"].get<double>();
@@ -125,23 +97,16 @@ WakeUpPlan plan_of(const LatencyOptions& o) {
   return plan;
 }
 
-/// What both a bare cycle and that of a machine say; `work_ns`: what the longest cycle took.
-json facts_of(const LatencyOptions& o, double cycle_us, const report::Histogram& late, std::int64_t missed,
-              std::int64_t work_ns) {
+json facts_of(const LatencyOptions& o, const WakeUp& measured) {
   json out{{"schema", 1},
-           {"cycle_us", cycle_us},
+           {"cycle_us", o.cycle_us},
            {"load", o.load},
-           {"wake_up", histogram_json(late)},
-           {"missed", missed}};
+           {"wake_up", histogram_json(measured.late)},
+           {"missed", measured.missed}};
   for (const double cycle : kCycles_us)
     out["fit"][text::number(cycle)] =
-        fit_name(fit_of(late.max(), work_ns, static_cast<std::int64_t>(cycle * 1e3)));
+        fit_name(fit_of(measured.late.max(), static_cast<std::int64_t>(cycle * 1e3)));
   out["advice"] = json::array();
-  return out;
-}
-
-json facts_of(const LatencyOptions& o, const WakeUp& measured) {
-  json out = facts_of(o, o.cycle_us, measured.late, measured.missed, 0);
   for (const cycle::RealtimeRefusal& r : measured.refusals)
     out["advice"].push_back({{"what", text::in_language(r.what)}, {"remedy", text::in_language(r.remedy)}});
   for (const Advice& a : advice_for(""))
@@ -209,43 +174,9 @@ int on_bus(const LatencyOptions& o) {
   return bus->finish(finish(o, measured, &times));
 }
 
-/// The cycle of a machine, phase by phase.
-int of_machine(const LatencyOptions& o) {
-  const EndBySignal signals;
-  int code = kDone;
-  const auto measured = measure_machine(
-      o, [&] { return signals.ended(); }, code);
-  if (measured == nullptr || code != kDone) return code;
-  const report::CycleTimes& times = measured->times;
-  json facts = facts_of(o, measured->cycle_us, times.lateness(), measured->missed, times.duration().max());
-  facts["machine"] = measured->machine;
-  facts["cycle"] = histogram_json(times.duration());
-  for (std::size_t p = 0; p < times.phase_names().size(); ++p)
-    facts["phases"][times.phase_names()[p]] = histogram_json(times.phase(p));
-  for (const Advice& a : advice_for(""))
-    facts["advice"].push_back({{"what", text::in_language(a.what)}, {"remedy", text::in_language(a.remedy)}});
-  if (o.json) {
-    print_exact(facts.dump(1));
-  } else {
-    say(kMachine, {measured->machine, text::number(measured->cycle_us)});
-    print_histogram(text::both("wake-up", "пробуждение"), facts["wake_up"]);
-    print_histogram(text::both("whole cycle", "весь цикл"), facts["cycle"]);
-    for (const std::string& name : times.phase_names()) print_quantiles(kPhase, name, facts["phases"][name]);
-    if (measured->missed > 0)
-      say(kMissed, {std::to_string(measured->missed), std::to_string(times.lateness().count())});
-    for (const double cycle : kCycles_us)
-      say(kFit, {text::number(cycle), machine_fit_words(fit_of(times.lateness().max(), times.duration().max(),
-                                                               static_cast<std::int64_t>(cycle * 1e3)))});
-    for (const Advice& a : advice_for("")) say(kAdvice, {a.what, a.remedy});
-  }
-  const auto own = static_cast<std::int64_t>(measured->cycle_us * 1e3);
-  return fit_of(times.lateness().max(), times.duration().max(), own) == Fit::no ? kAlarm : kDone;
-}
-
 }  // namespace
 
 int latency(const LatencyOptions& options) {
-  if (options.bus.ends_with(".toml")) return of_machine(options);
   if (!options.bus.empty()) {
     if (options.node > 0) return on_bus(options);
     complain(kNode, {});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/latency/this_computer.hpp"
 
-#include <algorithm>
 #include <fstream>
 
 #include "firmware_if/text/finding.hpp"
@@ -23,12 +22,6 @@ std::string line_of(const std::string& path) {
 
 Fit fit_of(std::int64_t worst, std::int64_t cycle) noexcept {
   return 5 * worst <= cycle ? Fit::good : 2 * worst <= cycle ? Fit::doubtful : Fit::no;
-}
-
-Fit fit_of(std::int64_t worst_ns, std::int64_t work_ns, std::int64_t cycle_ns) noexcept {
-  const std::int64_t end = worst_ns + work_ns;
-  const Fit work = 5 * end <= 4 * cycle_ns ? Fit::good : end <= cycle_ns ? Fit::doubtful : Fit::no;
-  return std::max(work, fit_of(worst_ns, cycle_ns));
 }
 
 const char* fit_name(Fit fit) noexcept {

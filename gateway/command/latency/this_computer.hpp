@@ -14,8 +14,6 @@ enum class Fit : std::uint8_t {
   no,
 };
 Fit fit_of(std::int64_t worst_ns, std::int64_t cycle_ns) noexcept;
-/// The same for a cycle with its work: together they end within four fifths of it, or at least within it.
-Fit fit_of(std::int64_t worst_ns, std::int64_t work_ns, std::int64_t cycle_ns) noexcept;
 /// "good", "doubtful", "no".
 const char* fit_name(Fit fit) noexcept;
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <atomic>
 #include <functional>
-#include <thread>
 #include <vector>
 
 #include "firmware_if/image/time.hpp"
@@ -22,19 +20,6 @@ struct WakeUp {
   report::Histogram late;   ///< ns behind the absolute time of each cycle
   std::int64_t missed = 0;  ///< cycles that began when the next one was due already
   std::vector<cycle::RealtimeRefusal> refusals;
-};
-
-/// Keeps every processor and its memory busy as long as it lives, if `wanted`. Not real-time safe.
-class Load {
- public:
-  explicit Load(bool wanted);
-  ~Load();
-  Load(const Load&) = delete;
-  Load& operator=(const Load&) = delete;
-
- private:
-  std::atomic<bool> stop_{false};
-  std::vector<std::thread> threads_;
 };
 
 /// Sleeps to absolute times on a thread as the control has it, and notes how late it wakes. `each`: work of a
