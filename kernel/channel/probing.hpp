@@ -20,8 +20,8 @@ class Probing {
   static constexpr double kBounce = 0.02;  // s
   /// A probe that was deflected is free when the axes are so much further back than they had gone beyond the
   /// touch, and have been there for so long.
-  static constexpr double kRelease = 2.0;   // mm
-  static constexpr double kReleased = 0.1;  // s
+  static constexpr double kRelease = 2.0;    // mm
+  static constexpr double kReleased = 0.03;  // s
   /// A drive tells its latch within so long.
   static constexpr double kLatchPatience = 0.5;  // s
 

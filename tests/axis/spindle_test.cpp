@@ -132,6 +132,24 @@ TEST(Spindle, takes_the_override_of_the_plc_and_the_limits_of_its_configuration)
   EXPECT_EQ(rig.spindle.ordered_rpm(), 100.0);
 }
 
+TEST(Spindle, never_turns_faster_than_the_chuck_permits_and_slows_down_when_that_falls) {
+  SpindleRig rig;
+  rig.set("limit", 800.0);
+  rig.spindle.order(SpindleMode::cw, 1500.0);
+  rig.set("override", 125.0);
+  rig.run(1000);
+  EXPECT_NEAR(rig.image.spindles[0].command_rpm, 800.0, 1e-9);
+  EXPECT_TRUE(rig.spindle.at_speed());
+  rig.set("limit", 300.0);
+  rig.run(1000);
+  EXPECT_NEAR(rig.image.spindles[0].command_rpm, 300.0, 1e-9);
+  EXPECT_LE(rig.steepest, 3000.0 + 1e-6);
+  rig.set("limit", 0.0);
+  rig.set("override", 100.0);
+  rig.run(1000);
+  EXPECT_NEAR(rig.image.spindles[0].command_rpm, 1500.0, 1e-9);
+}
+
 TEST(Spindle, counts_whole_revolutions_from_its_zero_mark_with_the_time_that_they_are_of) {
   SpindleConfig c;
   c.encoder_delay = 0.003;

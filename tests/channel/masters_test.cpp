@@ -196,7 +196,7 @@ struct WatchedTap : Rig {
   double at_lock_ = 0.0;
 };
 
-constexpr std::string_view kTap = "S500 M3\nG0 Z5\nG84 R2 Z-25 K1.5\nX10\nG80\nM30\n";
+constexpr std::string_view kTap = "S500 M3\nG0 Z5\nG84 R2 Z-25 K1.5\nX10\nG80\nG0 X20\nM30\n";
 /// The ramp of the rig's spindle is 50 revolutions/s2.
 const double kTapBound = 2.0 * path::phase_bound({0.001, 0.002, 4096.0, 1.0, 50.0}, 1.5);
 
@@ -254,6 +254,7 @@ TEST(TapProgram, whose_spindle_coasts_goes_no_deeper_than_it_is_allowed_to) {
   EXPECT_EQ(rig.alarms(alarm::kTapTooDeep), 1) << rig.alarm_list();
   EXPECT_EQ(rig.alarm(alarm::kTapTooDeep)->line, 4);
   EXPECT_GE(rig.deepest, -25.0 - 3.0 - 1e-6);
+  rig.run(1.0);
   EXPECT_EQ(rig.image().spindles[0].command_rpm, 0.0) << "the spindle is told to stop";
   EXPECT_EQ(rig.violations(), "");
 }
@@ -285,18 +286,22 @@ TEST(TapProgram, that_is_held_leaves_its_hole_first_and_shows_that_it_will_be_he
     rig.start();
     ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -8.0; }));
     EXPECT_FALSE(rig.status().holds_later);
-    if (door)
+    if (door) {
       rig.logic.feed_enable = false;
-    else
+    } else {
       EXPECT_EQ(rig.ask(RequestKind::hold), cycle::Refusal::none);
+    }
     rig.run(0.01);
     EXPECT_TRUE(rig.status().holds_later);
-    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held && !rig.moving(); }));
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held && !rig.moving(); }))
+        << rig.alarm_list();
     EXPECT_FALSE(rig.status().holds_later);
     EXPECT_NEAR(rig.x(2), 2.0, 1e-6);
     EXPECT_NEAR(rig.deepest, -25.0, 0.75) << "the thread is whole";
     rig.logic.feed_enable = true;
-    if (!door) EXPECT_EQ(rig.ask(RequestKind::resume), cycle::Refusal::none);
+    if (!door) {
+      EXPECT_EQ(rig.ask(RequestKind::resume), cycle::Refusal::none);
+    }
     ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
   }
 }
@@ -309,7 +314,7 @@ TEST(TapProgram, dwells_at_its_depth_with_a_standing_spindle) {
     watch();
     stands += rig.x(2) < -13.0 && std::abs(rig.image().spindles[0].actual_rpm) < 3.0;
   };
-  ASSERT_TRUE(rig.finish()) << rig.alarm_list() << message(rig);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
   EXPECT_GE(stands, 400) << "cycles";
   EXPECT_LE(stands, 600);
   EXPECT_NEAR(rig.deepest, -15.0, 0.75);
@@ -326,7 +331,7 @@ TEST(TapProgram, too_close_to_the_end_of_the_travel_is_refused_before_it_moves) 
 }
 
 TEST(ThreadProgram, whose_spindle_is_not_told_to_turn_is_an_alarm_and_moves_nothing) {
-  Rig rig("G33 Z-60 K1.5\nM30\n");
+  Rig rig("S600 M3\nM5\nG33 Z-60 K1.5\nM30\n");
   rig.start();
   ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }, 5.0));
   EXPECT_EQ(rig.alarms(alarm::kThreadSpindleStands), 1) << rig.alarm_list();

@@ -196,11 +196,14 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     parts.axes.push_back(c);
   }
   model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
-  if (dialect != "nc110") model_.power_on = {std::string(power_on)};
+  model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
+  if (dialect != "nc110") {
+    model_.power_on = {std::string(power_on)};
+    model_.variables.clear();
+  }
   if (kind == RigKind::iso) dialect_ = "sinumerik-808d", model_.power_on = {"G291"};
   if (kind == RigKind::iso) model_.kind = program::MachineModel::Kind::milling;
   if (kind == RigKind::fenix) dialect_ = "fenix", model_.power_on = {"G94", "G90"};
-  model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
   process = std::make_unique<Process>(config);
   process->load(factory(program));
   parts.devices = {&drives};

@@ -47,7 +47,7 @@ class IdealDrives final : public image::CycleDevice {
   std::array<bool, kAxes> latched_{};
   std::array<std::int64_t, kAxes> counts_{}, counts_before_{};
   void probe(image::ProcessImage& image);
-  double clear_before_ = 0.0, slipped_ = 0.0;
+  double clear_before_ = 1.0, slipped_ = 0.0;
   int since_edge_ = 1000000;
   image::DriveCommand spindle_;
 };

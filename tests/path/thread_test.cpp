@@ -348,13 +348,14 @@ TEST(Thread, chain_that_grows_faster_is_left_inside_of_the_limits_of_the_axis_th
   config.threads.window = 1e9;
   config.threads.retract = {30.0, 0.0, 0.0};
   Lathe m(config);
-  m.spindle.wanted = m.spindle.w = 60.0;
-  Element slow = thread_to(6, -60, 1.5, 3600.0), fast = thread_to(126, -180, 6.0, 3600.0);
-  fast.lock.per_turn = 6.0 * std::hypot(120.0, 120.0) / 120.0;
+  m.spindle.wanted = m.spindle.w = 50.0;
+  Element slow = thread_to(30, -30, 1.5, 3000.0), fast = thread_to(150, -150, 6.0, 3000.0);
+  slow.lock.per_turn = 1.5 * std::sqrt(2.0);
+  fast.lock.per_turn = 6.0 * std::sqrt(2.0);
   m.add(slow);
   m.add(fast);
   m.planner.finish();
-  ASSERT_TRUE(m.until([](const Sample& s) { return s.master.locked && s.position[2] < -120.0; })) << m.why();
+  ASSERT_TRUE(m.until([](const Sample& s) { return s.master.locked && s.position[2] < -70.0; })) << m.why();
   m.follower.stop();
   ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; }));
   EXPECT_LE(m.limits(), 1.001);

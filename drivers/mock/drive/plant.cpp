@@ -98,7 +98,6 @@ double Plant::kinetic_energy() const noexcept {
 }
 
 void Plant::step(const canopen::ServoCommand& command) noexcept {
-  ++steps_;
   const double torque = loop_torque(command);
   const bool closed = brake_closed(command.brake_released);
   if (compliant())
@@ -109,6 +108,7 @@ void Plant::step(const canopen::ServoCommand& command) noexcept {
     const double load = torque_ / config_.rated_torque_nm;
     thermal_ += thermal_step_ * (load * load - thermal_);
   }
+  ++steps_;
   measure();
 }
 

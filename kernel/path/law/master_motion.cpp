@@ -275,9 +275,8 @@ double MasterMotion::within_limits(double jerk) const noexcept {
 void MasterMotion::watch(const MasterEstimate& master, const MasterReading& reading) noexcept {
   if (!master.known()) return fail(MasterFault::lost, 0.0, 0.0);
   const double w = direction_ * master.at(reading.acts_ns).w;
-  // A tap goes with a spindle that slows down, and waits with one that stands (watch_turn()).
   const bool turns_round = turn_ == Turn::turning || halt_;
-  const double least = taps() ? -kLeastShare * begun_with_ - kMasterStands : kLeastShare * begun_with_;
+  const double least = taps() ? least_of_tap() : kLeastShare * begun_with_;
   if (!turns_round && w < least) return fail(MasterFault::reversed, w, least);
   if (!taps() && phase_ == Phase::locked && too_fast(w, reach())) return;
   if (!master.fresh()) return;

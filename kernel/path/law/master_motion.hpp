@@ -119,6 +119,7 @@ class MasterMotion {
   void turn_at_end(double w, const MasterReading& reading) noexcept;
   void watch_turn(double w, const MasterReading& reading) noexcept;
   void watch_depth() noexcept;
+  double least_of_tap() const noexcept;
   void turn_back() noexcept;
   Box leaving_box(const MotionState& from) const noexcept;
   std::size_t segment_at(double s) const noexcept;

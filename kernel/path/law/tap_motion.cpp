@@ -10,6 +10,7 @@ namespace servogate::path {
 namespace {
 
 constexpr double kSpindleHears = 1.0;  // cycles besides what a reading takes, until it has its order
+constexpr double kTurnsBack = 0.05;    // of the speed that it was begun with
 constexpr double kTurnPatience = 3.0;  // s, besides twice the ramp: a drive that stood so long comes on again
 
 }  // namespace
@@ -95,10 +96,19 @@ void MasterMotion::watch_turn(double w, const MasterReading& reading) noexcept {
   if (turn_s_ > patience) fail(MasterFault::no_turn, turn_s_, patience);
 }
 
+/// A tap goes with a spindle that slows down and waits with one that stands (watch_turn()); of one that has
+/// just come to rest the estimate says for a while that it turns back.
+double MasterMotion::least_of_tap() const noexcept {
+  return -kMasterStands - kTurnsBack * begun_with_ - 1.5 * braking_ / MasterEstimate::kForgets;
+}
+
 /// Where it would rest if it were given up now.
 void MasterMotion::watch_depth() noexcept {
+  if (leg_ == 0 && state_.s < -tap_overshoot_) fail(MasterFault::reversed, state_.v, 0.0);
   if (state_.v <= 0.0 || (last_leg() && !halt_)) return;
-  const double beyond = state_.s + ramp_distance(state_.v, state_.a, 0.0, box_) - length_;
+  // One cycle passes before it slows down.
+  const double beyond =
+      state_.s + state_.v * period_ + ramp_distance(state_.v, state_.a, 0.0, box_) - length_;
   if (beyond > tap_overshoot_) fail(MasterFault::overshoot, beyond, tap_overshoot_);
 }
 
