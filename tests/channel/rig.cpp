@@ -169,10 +169,14 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     parts.axes.push_back(c);
   }
   model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
-  if (kind == RigKind::iso) language_ = "sinumerik-808d", model_.power_on = {"G291"};
-  if (kind == RigKind::iso) model_.kind = program::MachineModel::Kind::milling;
-  if (kind == RigKind::fenix) language_ = "fenix", model_.power_on = {"G94", "G90"};
   model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
+  if (kind == RigKind::iso || kind == RigKind::fenix) {
+    language_ = kind == RigKind::iso ? "sinumerik-808d" : "fenix";
+    model_.power_on =
+        kind == RigKind::iso ? std::vector<std::string>{"G291"} : std::vector<std::string>{"G94", "G90"};
+    model_.kind = program::MachineModel::Kind::milling;
+    model_.variables.clear();
+  }
   process = std::make_unique<Process>(config);
   process->load(factory(program));
   parts.devices = {&drives};
