@@ -226,6 +226,7 @@ class Process final : public cycle::ProcessInCycle {
   bool go_on_ = false;  ///< start or step while an event waits for the operator
   double override_ = 1.0;
   bool override_effective_ = true;  ///< a program may say that it does not count
+  bool spindle_turned_ = false;     ///< the turn by an angle that the path waits for has been ordered
   Stage stage_ = Stage::none;
   Event event_;
   double waited_s_ = 0.0;

@@ -196,10 +196,14 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
   if (told == nullptr) return true;
   axis::Spindle& spindle = *told;
   if (e.mode == program::SpindleMode::turn) {
-    if (stage_ == Stage::entered) spindle.turn(e.angle, e.value);
+    if (stage_ == Stage::entered) spindle_turned_ = false;
     surface_speed_ = 0.0;
     stage_ = Stage::waiting;
-    return spindle.oriented();
+    if (spindle_turned_) return spindle.oriented();
+    if (spindle.mode() == axis::SpindleMode::orient && !spindle.oriented()) return false;
+    spindle.turn(e.angle, e.value);
+    spindle_turned_ = true;
+    return false;
   }
   if (stage_ == Stage::entered) {
     surface_spindle_ = e.number;

@@ -201,9 +201,13 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     model_.power_on = {std::string(power_on)};
     model_.variables.clear();
   }
-  if (kind == RigKind::iso) dialect_ = "sinumerik-808d", model_.power_on = {"G291"};
-  if (kind == RigKind::iso) model_.kind = program::MachineModel::Kind::milling;
-  if (kind == RigKind::fenix) dialect_ = "fenix", model_.power_on = {"G94", "G90"};
+  if (kind == RigKind::iso || kind == RigKind::fenix) {
+    dialect_ = kind == RigKind::iso ? "sinumerik-808d" : "fenix";
+    model_.power_on =
+        kind == RigKind::iso ? std::vector<std::string>{"G291"} : std::vector<std::string>{"G94", "G90"};
+    model_.kind = program::MachineModel::Kind::milling;
+    model_.variables.clear();
+  }
   process = std::make_unique<Process>(config);
   process->load(factory(program));
   parts.devices = {&drives};

@@ -90,7 +90,8 @@ std::optional<Plan> plan_of(const std::string& language, const program::tests::C
   const auto on_command = [&](const Command& command) {
     good = good && !cannot_run(command, turns);
     if (const auto* spindle = std::get_if<program::Spindle>(&command.what)) {
-      const bool runs = spindle->mode == program::SpindleMode::cw || spindle->mode == program::SpindleMode::ccw;
+      const bool runs =
+          spindle->mode == program::SpindleMode::cw || spindle->mode == program::SpindleMode::ccw;
       rpm = runs ? spindle->speed : 0.0;
       good = good && !spindle->surface_speed;
       seconds += 1.0;
@@ -170,7 +171,8 @@ int run_all(const std::string& example, const std::string& language, const std::
     const program::tests::CaseFile c = program::tests::read_case(path);
     std::string letters;
     for (const auto& axis : c.machine.axes) letters += axis.letter + (axis.diameter ? "d" : "");
-    if (!letters.starts_with(axes_of_cases) || !c.errors.empty() || !c.findings.empty() || count == kMostPrograms)
+    if (!letters.starts_with(axes_of_cases) || !c.errors.empty() || !c.findings.empty() ||
+        count == kMostPrograms)
       continue;
     const Position start = here();
     const auto plan = plan_of(language, c, model, start, spoken.turns);
@@ -226,15 +228,18 @@ TEST(ProgramRuns, of_Fenix_lead_the_set_points_of_its_lathe_by_every_place_withi
   EXPECT_GE(lathe, 40);
 }
 
-/// Cases of the Siemens mode are none on a machine that powers on in the ISO dialect: what they say is refused.
-TEST(ProgramRuns, of_the_ISO_dialect_lead_the_set_points_of_a_mill_and_a_lathe_by_every_place_within_the_limits) {
+/// Cases of the Siemens mode are none on a machine that powers on in the ISO dialect: what they say is
+/// refused.
+TEST(ProgramRuns,
+     of_the_ISO_dialect_lead_the_set_points_of_a_mill_and_a_lathe_by_every_place_within_the_limits) {
   std::set<std::string> done;
-  const int mill = run_all("iso-flange", "sinumerik-808d", "XYZ", done, {.folder = "sinumerik"});
-  const int lathe = run_all("lathe", "sinumerik-808d", "XdZ", done,
-                            {.folder = "sinumerik",
-                             .power_on = {"G291"},
-                             .kind = program::MachineModel::Kind::turning,
-                             .turns = true});
+  Spoken on_mill, on_lathe;
+  on_mill.folder = on_lathe.folder = "sinumerik";
+  on_lathe.power_on = {"G291"};
+  on_lathe.kind = program::MachineModel::Kind::turning;
+  on_lathe.turns = true;
+  const int mill = run_all("iso-flange", "sinumerik-808d", "XYZ", done, on_mill);
+  const int lathe = run_all("lathe", "sinumerik-808d", "XdZ", done, on_lathe);
   std::printf("%d programs of the ISO dialect on the mill, %d on the lathe, %zu different\n", mill, lathe,
               done.size());
   EXPECT_GE(done.size(), 40u);
