@@ -179,7 +179,8 @@ struct WatchedTap : Rig {
       deepest = std::min(deepest, x(2));
       if (status().by_spindle && ++behind == 100) at_lock_ = -z_[2] - lead_mm * drives.turns;
       if (!status().by_spindle && !stays()) behind = 0;
-      if (behind < 100 || !stays()) return;
+      const bool leaves_hole = !status().by_spindle && state() == ProcessState::running;
+      if (behind < 100 || !stays() || leaves_hole) return;
       parted = std::max(parted, std::abs(-z_[2] - lead_mm * drives.turns - at_lock_));
     };
   }
