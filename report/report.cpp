@@ -39,7 +39,9 @@ const text::Entry kStopped{"report.stopped", "stopped by the operator after {0} 
 const text::Entry kUnfinished{"report.unfinished", "the program did not come to its end: {0} blocks in {1} s",
                               "программа не дошла до конца: кадров {0} за {1} с"};
 
-std::string hex(std::uint32_t value, int digits) { return std::string("0x") + text::hex_number(value, digits); }
+std::string hex(std::uint32_t value, int digits) {
+  return std::string("0x") + text::hex_number(value, digits);
+}
 
 /// What was measured, to the ninth decimal: no tail of binary fractions.
 double rounded(double value) {

@@ -23,8 +23,8 @@ struct TuningWish {
   double gain_margin_db = 8.0;
   /// Greatest |1 / (1 + L)|: how near L comes to -1 anywhere, a resonance behind the crossover included.
   double sensitivity_db = 6.0;
-  double position_peak_db = 0.5;  ///< of the closed position loop: it does not overshoot
-  double most_times = 10.0;       ///< the gain is changed by at most so much, in either direction
+  double position_peak_db = 0.5;   ///< of the closed position loop: it does not overshoot
+  double most_times = 10.0;        ///< the gain is changed by at most so much, in either direction
   double most_crossover_hz = 0.0;  ///< of the velocity loop; 0: as far as was measured
 };
 

@@ -11,10 +11,12 @@
 namespace servogate::mock {
 
 SimulatedDrive::Inside::Tuning::Tuning(const canopen::ObjectDictionary& dictionary, bool from_sheet)
-    : slots{dictionary.find(tuning_object::kVelocityLoop, 1), dictionary.find(tuning_object::kVelocityLoop, 2),
-            dictionary.find(tuning_object::kPositionLoop, 1), dictionary.find(tuning_object::kVelocityLoop, 3),
-            dictionary.find(tuning_object::kVelocityLoop, 4)} {
-  there = !from_sheet && std::find(slots.begin(), slots.end(), canopen::ObjectDictionary::kNone) == slots.end();
+    : slots{
+          dictionary.find(tuning_object::kVelocityLoop, 1), dictionary.find(tuning_object::kVelocityLoop, 2),
+          dictionary.find(tuning_object::kPositionLoop, 1), dictionary.find(tuning_object::kVelocityLoop, 3),
+          dictionary.find(tuning_object::kVelocityLoop, 4)} {
+  there =
+      !from_sheet && std::find(slots.begin(), slots.end(), canopen::ObjectDictionary::kNone) == slots.end();
   if (there) own = values(dictionary);
 }
 

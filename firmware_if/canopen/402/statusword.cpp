@@ -2,7 +2,6 @@
 #include "firmware_if/canopen/402/statusword.hpp"
 #include "firmware_if/text/hex.hpp"
 
-
 namespace servogate::canopen {
 namespace {
 

@@ -55,7 +55,9 @@ std::string_view drive_state_text(int state, Language language) {
   return state >= 0 && state < kStateCount ? kDriveStates[state][language == Language::russian] : "?";
 }
 
-std::string hex_text(unsigned value, int digits) { return std::string("0x") + text::hex_number(value, digits); }
+std::string hex_text(unsigned value, int digits) {
+  return std::string("0x") + text::hex_number(value, digits);
+}
 
 std::string object_text(std::uint16_t index, std::uint16_t subindex) {
   return hex_text(index, 4) + ":" + hex_text(subindex, 2).substr(2);

@@ -33,7 +33,8 @@ const text::Entry kOtherDevice{
     "od.other-device", "{0} is of another device: its {1} is {2}, node {3} has {4}; nothing was written",
     "{0} — от другого устройства: {1} в файле {2}, у узла {3} — {4}; ничего не записано"};
 const text::Entry kOtherSerial{
-    "od.other-serial", "{0} is of the device with the serial number {1}, this one has {2}: its parameters are taken",
+    "od.other-serial",
+    "{0} is of the device with the serial number {1}, this one has {2}: its parameters are taken",
     "{0} — от устройства с заводским номером {1}, у этого {2}: параметры берутся"};
 const text::Entry kRestored{"od.restored", "{0} parameters of node {1} written",
                             "записано параметров узла {1}: {0}"};
@@ -73,7 +74,9 @@ const Difference* other_device(const std::vector<Difference>& found) {
   return nullptr;
 }
 
-bool is_serial_number(const Difference& d) { return d.index == canopen::object::kIdentity && d.subindex == 4; }
+bool is_serial_number(const Difference& d) {
+  return d.index == canopen::object::kIdentity && d.subindex == 4;
+}
 
 /// The serial number is no parameter: the file of a device that was replaced is for its successor.
 void take_serial_number_out(std::vector<Difference>& found) { std::erase_if(found, is_serial_number); }
