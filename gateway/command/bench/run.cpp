@@ -148,6 +148,7 @@ int run_several_on(ToolBus& bus, const BenchOptions& options, BenchPlan& plan) {
   int code = kDone;
   const auto drives = BusDrive::open(bus, options, plan.use, options.out + "/bus.log", code);
   if (drives == nullptr) return code;
+  code = kDone;
   DriveSeats seats(*drives);
   bool accepted = true;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -178,7 +179,7 @@ int run_several_on(ToolBus& bus, const BenchOptions& options, BenchPlan& plan) {
   for (std::size_t k = all.size(); k-- > 0;) {
     OneOfSeveral& one = all[k];
     json meta = meta_of("bench run", one.options, *drives, k);
-    meta.update(one.meta);
+    if (one.meta.is_object()) meta.update(one.meta);
     BenchWork work{one.options, *one.guard, *drives, meta, {}, k};
     const int own = finish(work, one.found, plan.limits, one.off);
     if (own != kDone && (own != kStopped || code == kDone)) code = own;
