@@ -252,21 +252,6 @@ TEST_F(Lockstep, a_relay_tunes_in_a_second_and_its_promise_is_kept) {
   EXPECT_LT(m["after"]["step"]["itae"], m["before"]["step"]["itae"]);
 }
 
-TEST_F(Lockstep, a_notch_is_written_where_the_file_names_its_objects) {
-  const Ended ended =
-      bench("tune $DRIVE --apply --gains " + shell::source("examples/bench/simulated.gains.toml") +
-                " --periods 6 --travel -1..100 --speed 6 --torque 4 --i-may-move",
-            "friction=0.1,inertia=0.001,load-inertia=0.001,stiffness=400,damping=0.02,velocity-gain=0.2");
-  ASSERT_EQ(ended.code, 0) << ended.out << ended.err;
-  const json m = meta();
-  EXPECT_EQ(m["notch"]["used"], true);
-  EXPECT_NEAR(m["notch"]["hz"], std::sqrt(400.0 * 2000.0) / 6.2832, 3.0);
-  EXPECT_NEAR(m["gains"]["written"]["notch"]["hz"], m["notch"]["hz"], 1e-3) << "the drive took it";
-  EXPECT_FALSE(m["gains"]["before"].contains("notch"));
-  EXPECT_EQ(m["kept"], true);
-  EXPECT_LT(m["after"]["step"]["itae"], m["before"]["step"]["itae"]);
-}
-
 TEST_F(Lockstep, a_proposal_without_apply_writes_nothing) {
   const Ended ended = bench("tune $DRIVE --gains " + shell::source("examples/bench/simulated.gains.toml") +
                                 " --periods 4 --travel -1..100 --speed 6 --torque 4 --i-may-move",
