@@ -27,6 +27,10 @@ namespace servogate::machine {
 /// What the feed of an arc under radius compensation is the speed of: the tool's centre, the contour, or the
 /// contour on inside radii and the centre on outside ones.
 enum class ArcFeed : std::uint8_t { tool_centre, contour, inside };
+/// To which side an axis leaves a thread: by the sign of its thread_retract, or to where it came from.
+enum class ThreadSide : std::uint8_t { declared, infeed };
+/// What tells where the probe touched: the edge of its point, or input 1 or 2 of the axes' drives (60B8h).
+enum class ProbeLatch : std::uint8_t { edge, drive_1, drive_2 };
 enum class AxisType : std::uint8_t { linear, rotary };
 /// For languages that have words of their own for each; `by_axes`: turning where an axis counts diameters.
 enum class MachineKind : std::uint8_t { by_axes, turning, milling };
@@ -308,8 +312,11 @@ struct ControlConfig {
   double path_reserve = 1.0;                ///< per cent of the axes' limits, for holds and overrides
   double thread_window = 0.2;               ///< mm of path off the spindle, further off a thread is left
   bool thread_hold_retracts = false;        ///< a hold leaves a thread; false: the pass goes on to its end
-  std::string probe;                        ///< input point of the probe, TRUE = deflected
-  int tool_places = 0;                      ///< of the magazine or turret; 0: T is not compared with it
+  ThreadSide thread_retract_side = ThreadSide::declared;
+  double tap_overshoot = 3.0;  ///< mm that a tap may go beyond its depth with its spindle
+  std::string probe;           ///< input point of the probe, TRUE = deflected
+  ProbeLatch probe_latch = ProbeLatch::edge;
+  int tool_places = 0;  ///< of the magazine or turret; 0: T is not compared with it
   int processes = 1;
   int k_size = static_cast<int>(image::kPacketKDefaultSize);  ///< bytes of packet K
   int syvar_size = static_cast<int>(image::kSyvarDefaultSize);

@@ -42,6 +42,10 @@ struct SimulatedDrive {
   bool absolute_encoder = false;    ///< false: the encoder reads 0 at power-on wherever the axis stands
   double end_stop_min = -kNoLimit;  ///< rigid stops, machine coordinates, mm
   double end_stop_max = kNoLimit;
+  double dip_torque = 0.0;     ///< N m against the motion, that comes and goes
+  double dip_period = 1.0;     ///< s from one to the next
+  double dip_time = 0.1;       ///< s that each lasts
+  double encoder_noise = 0.0;  ///< counts that a reading is off at most
 };
 /// [[simulation.amplifier]]: the motor and amplifier behind a channel of a simulated board.
 struct SimulatedAmplifier {

@@ -17,7 +17,7 @@ namespace servogate::report {
 namespace {
 
 constexpr int kPositionDecimals = 12, kFeedDecimals = 9, kErrorDecimals = 9, kSpindleDecimals = 6,
-              kWorkDecimals = 6;
+              kWorkDecimals = 6, kAngleDecimals = 3;
 constexpr std::size_t kChunk = std::size_t{1} << 18;
 
 std::size_t signal_count(const TraceLayout& layout) {
@@ -72,6 +72,8 @@ char* CsvSink::Impl::write(char* out, const TraceRow& row) const noexcept {
     out = write_fixed(out, row.spindles[s].command_rpm, kSpindleDecimals);
     *out++ = ',';
     out = write_fixed(out, row.spindles[s].actual_rpm, kSpindleDecimals);
+    *out++ = ',';
+    out = write_fixed(out, row.spindles[s].angle_deg, kAngleDecimals);
   }
   for (std::size_t a = 0; a < axes && columns.following_error; ++a) {
     *out++ = ',';
@@ -115,7 +117,7 @@ std::string CsvSink::header(const TraceLayout& layout, CsvColumns columns) {
     out += "," + text::csv_field(a + ".cmd") + "," + text::csv_field(a + ".act");
   for (int s = 0; s < layout.spindles; ++s) {
     const std::string name = s == 0 ? "spindle" : "spindle" + std::to_string(s + 1);
-    out += "," + name + ".cmd," + name + ".act";
+    out += "," + name + ".cmd," + name + ".act," + name + ".angle";
   }
   if (columns.following_error)
     for (const std::string& a : layout.axes) out += "," + text::csv_field(a + ".error");
@@ -138,7 +140,7 @@ void CsvSink::begin(const TraceLayout& layout) {
   i.further = static_cast<std::size_t>(std::clamp(layout.processes, 1, image::kMaxProcesses) - 1);
   i.signals = i.columns.signals ? signal_count(layout) : 0;
   i.sub_microsecond = layout.period_ns % image::kMicrosecond != 0;
-  i.row_max = 64 + kFixedMax * (1 + 4 * i.axes + 2 * i.spindles + 3 * i.further) + 2 * i.signals;
+  i.row_max = 64 + kFixedMax * (1 + 4 * i.axes + 3 * i.spindles + 3 * i.further) + 2 * i.signals;
   if (i.columns.work && layout.frame_of) i.places.emplace(layout);
   i.buffer.resize(kChunk + i.row_max);
   i.file = std::fopen(i.path.c_str(), "wb");

@@ -70,7 +70,8 @@ struct RecordedRun {
   PathLine path;
   double path_tolerance = 0.0;  ///< mm
   /// Every cycle, the whole run or its newest part and what is around alarms: X.position, X.error, X.derived
-  /// (how many derivatives of the position are valid, 0 to 3), path.speed, spindle.cmd, spindle.act ...
+  /// (how many derivatives of the position are valid, 0 to 3), path.speed, spindle.cmd, spindle.act ..., and
+  /// with a spindle thread.off (how far a thread or tap was off its angle, mm).
   std::vector<Channel> channels;
   std::vector<CycleStretch> stretches;
   std::vector<SignalTrack> signals;

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "firmware_if/text/hex.hpp"
 #include "report/report_json.hpp"
 
 namespace servogate::report {
@@ -40,9 +40,7 @@ const text::Entry kUnfinished{"report.unfinished", "the program did not come to 
                               "программа не дошла до конца: кадров {0} за {1} с"};
 
 std::string hex(std::uint32_t value, int digits) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%0*X", digits, value);
-  return text;
+  return std::string("0x") + text::hex_number(value, digits);
 }
 
 /// What was measured, to the ninth decimal: no tail of binary fractions.

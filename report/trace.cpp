@@ -21,6 +21,7 @@ void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRo
   row.alarms = image.alarms_active;
   row.run = image.processes[0].run;
   row.blocks = image.processes[0].blocks_done;
+  row.off_spindle_mm = image.processes[0].off_spindle_mm;
   const std::size_t axes = std::min(layout.axes.size(), row.axes.size());
   for (std::size_t a = 0; a < axes; ++a) {
     const image::AxisImage& from = image.axes[a];
@@ -31,7 +32,8 @@ void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRo
   const std::size_t spindles =
       std::min<std::size_t>(static_cast<std::size_t>(layout.spindles), row.spindles.size());
   for (std::size_t s = 0; s < spindles; ++s)
-    row.spindles[s] = {image.spindles[s].command_rpm, image.spindles[s].actual_rpm};
+    row.spindles[s] = {image.spindles[s].command_rpm, image.spindles[s].actual_rpm,
+                       image.spindles[s].angle_deg};
   for (int p = 1; p < layout.processes && p < image::kMaxProcesses; ++p) {
     const image::ProcessStatus& from = image.processes[static_cast<std::size_t>(p)];
     row.further[static_cast<std::size_t>(p - 1)] = {from.feed_mm_s, from.line, from.tool, from.run,

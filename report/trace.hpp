@@ -59,6 +59,7 @@ struct TraceAxis {
 struct TraceSpindle {
   double command_rpm = 0.0;
   double actual_rpm = 0.0;
+  double angle_deg = 0.0;  ///< measured, 0 - 360
 };
 
 /// A process beside the first one.
@@ -73,13 +74,14 @@ struct TraceProcess {
 struct TraceRow {
   std::int64_t cycle = 0;
   image::Nanoseconds t_ns = 0;
-  double feed_mm_s = 0.0;    ///< speed of the set-point along the path
-  std::int32_t line = 0;     ///< line of the block in motion, 0: none
-  bool rapid = false;        ///< the block in motion is a rapid
-  std::int32_t tool = 0;     ///< number of the tool in process 1, 0: none
-  std::uint32_t alarms = 0;  ///< not acknowledged
-  std::uint32_t run = 0;     ///< of process 1, image::ProcessStatus::run
-  std::int64_t blocks = 0;   ///< of process 1, image::ProcessStatus::blocks_done
+  double feed_mm_s = 0.0;       ///< speed of the set-point along the path
+  std::int32_t line = 0;        ///< line of the block in motion, 0: none
+  bool rapid = false;           ///< the block in motion is a rapid
+  std::int32_t tool = 0;        ///< number of the tool in process 1, 0: none
+  std::uint32_t alarms = 0;     ///< not acknowledged
+  std::uint32_t run = 0;        ///< of process 1, image::ProcessStatus::run
+  std::int64_t blocks = 0;      ///< of process 1, image::ProcessStatus::blocks_done
+  double off_spindle_mm = 0.0;  ///< of process 1, image::ProcessStatus::off_spindle_mm
   std::array<TraceAxis, image::kMaxAxes> axes{};
   std::array<TraceSpindle, image::kMaxSpindles> spindles{};
   std::array<TraceProcess, image::kMaxProcesses - 1> further{};  ///< processes 2 and up
@@ -113,9 +115,10 @@ struct CsvColumns {
 };
 
 /// The trace as CSV:
-/// `t,feed,line,X.cmd,X.act,Y.cmd,...,spindle.cmd,spindle.act,X.error,...,<signal>...,feed2,line2,tool2,...,
-/// X.work,...` (feed2 ... of processes 2 and up), one row a cycle; t in seconds, feed in mm/s, positions in
-/// mm or degrees with 12 decimals, spindles in rpm. Equal rows give equal bytes.
+/// `t,feed,line,X.cmd,X.act,Y.cmd,...,spindle.cmd,spindle.act,spindle.angle,X.error,...,<signal>...,feed2,
+/// line2,tool2,...,X.work,...` (feed2 ... of processes 2 and up), one row a cycle; t in seconds, feed in
+/// mm/s, positions in mm or degrees with 12 decimals, spindles in rpm and degrees. Equal rows give equal
+/// bytes.
 class CsvSink final : public TraceSink {
  public:
   explicit CsvSink(std::string path, CsvColumns columns = {});

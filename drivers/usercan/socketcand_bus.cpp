@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstring>
 #include "drivers/clock.hpp"
-#include "drivers/usercan/socketcand_text.hpp"
 
 namespace servogate::usercan {
 namespace {
@@ -170,13 +169,13 @@ bool SocketcandBus::receive(image::CanFrame& frame) noexcept {
   return false;
 }
 
-bool SocketcandBus::done(image::Nanoseconds wish) noexcept {
+bool SocketcandBus::done(image::Nanoseconds wish, LockstepWake wake) noexcept {
   Element e;
   e.add("< done ");
   e.add_number(granted_);
   e.add(" ");
   e.add_number(wish);
-  e.add(" >");
+  e.add(wake == LockstepWake::frames ? " frames >" : wake == LockstepWake::wish ? " wish >" : " >");
   say(e.view());
   flush();
   return connected_;

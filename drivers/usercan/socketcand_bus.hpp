@@ -9,6 +9,7 @@
 
 #include "drivers/notice.hpp"
 #include "drivers/usercan/address.hpp"
+#include "drivers/usercan/socketcand_text.hpp"
 #include "firmware_if/image/can_bus.hpp"
 
 namespace servogate::usercan {
@@ -51,8 +52,8 @@ class SocketcandBus final : public image::CanBus {
   bool flushed() const noexcept { return out_size_ == 0; }
 
   /// Lockstep: says that everything of the granted instant is done, and that time is wanted at `wish` at the
-  /// latest (the server grants every end of a frame besides). The first one comes after the first grant.
-  bool done(image::Nanoseconds wish) noexcept;
+  /// latest, and before that by `wake`. The first one comes after the first grant.
+  bool done(image::Nanoseconds wish, LockstepWake wake = LockstepWake::any) noexcept;
   /// Lockstep: waits for the next grant; everything heard until then can be received afterwards. nullopt:
   /// time has ended, or the server is gone. Not real-time safe.
   std::optional<image::Nanoseconds> wait_grant();

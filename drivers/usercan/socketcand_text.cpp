@@ -80,6 +80,10 @@ bool read_frame(Words words, bool remote, image::CanFrame& frame) noexcept {
   return true;
 }
 
+LockstepWake lockstep_wake(std::string_view word) noexcept {
+  return word == "frames" ? LockstepWake::frames : word == "wish" ? LockstepWake::wish : LockstepWake::any;
+}
+
 std::optional<std::int64_t> read_number(std::string_view word) noexcept {
   std::int64_t value = 0;
   return number(word, 10, value) ? std::optional(value) : std::nullopt;

@@ -39,6 +39,14 @@ bool read_frame(Words words, bool remote, image::CanFrame& frame) noexcept;
 /// A whole number, decimal. nullopt: it is none.
 std::optional<std::int64_t> read_number(std::string_view word) noexcept;
 
+/// What gives a participant in lockstep time before its wish. A word behind the wish of `done`; none: any.
+enum class LockstepWake : std::uint8_t {
+  any,     ///< every instant that is granted to anybody
+  frames,  ///< "frames": the end of a frame that it hears
+  wish,    ///< "wish": nothing; frames that end meanwhile come with its grant
+};
+LockstepWake lockstep_wake(std::string_view word) noexcept;
+
 /// Text of an element in a buffer of its own.
 class Element {
  public:

@@ -149,6 +149,9 @@ inline constexpr InterfaceField kSpindleFields[] = {
     {"override", 16, 0, Format::by, Writer::plc, "per cent 50-125; 0: 100"},
     {"gear_wish", 17, 0, Format::by, Writer::plc,
      "gear that is wanted, by M41 to M44 or a lever; 0: the slowest that reaches the speed"},
+    {"limit", 20, 0, Format::re, Writer::plc,
+     "largest speed that the chuck or the work in it permits, rpm, override included; 0: that of the machine",
+     kGuards},
 };
 inline constexpr InterfaceField kMachineFields[] = {
     {"control_alive", 0, 0, Format::bl, Writer::nc, "toggles while the control runs, for the safety relay",

@@ -179,10 +179,14 @@ struct ProcessStatus {
   double override_ratio = 1.0;  ///< 0-1.5
   bool rapid = false;           ///< the block in motion is a rapid
   std::uint16_t tool = 0;
-  std::uint32_t starved = 0;  ///< cycles in which planning was late and the path law ran into its rest
-  bool retraced = false;      ///< a held program stands, or moves, back on its path
-  bool retracing = false;     ///< a way along its path, back or forward, is asked for or under way
-  double retraced_mm = 0.0;   ///< path from there to where it was held
+  std::uint32_t starved = 0;      ///< cycles in which planning was late and the path law ran into its rest
+  bool retraced = false;          ///< a held program stands, or moves, back on its path
+  bool retracing = false;         ///< a way along its path, back or forward, is asked for or under way
+  double retraced_mm = 0.0;       ///< path from there to where it was held
+  bool by_spindle = false;        ///< a thread or tap goes with the spindle's angle, behind its lead-in
+  bool holds_later = false;       ///< held at the end of the thread, or when the tap has left its hole
+  double off_spindle_mm = 0.0;    ///< path that it was off the measured angle of the same time
+  double tap_overshoot_mm = 0.0;  ///< that the tap in motion, or the last one, went beyond its depth
 };
 
 /// Everything the machine knows, written only inside Cycle::step() in the order: driver inputs, force, PLC,

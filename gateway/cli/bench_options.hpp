@@ -29,9 +29,12 @@ struct BenchOptions : CanopenBusOptions {
   std::string signal, loop = "velocity";
   double amplitude = 1.0, offset = 0.0;  ///< rev, rev/s or N m
   double duration_s = 1.0;
+  std::vector<int> with;   ///< of run: further nodes that get the same signal in the same cycles
+  double phase_deg = 0.0;  ///< of its sine: each further node is ahead by so much
   double move_speed = 1.0, acceleration = 10.0, jerk = 1000.0;  ///< rev/s, rev/s2, rev/s3
   double from_hz = 1.0, to_hz = 100.0;
   int period = 1024, periods = 8;
+  double inertia_kg_m2 = 0.0, friction_nm = 0.0;  ///< at the least, for a torque loop; inertia 0: not given
 
   // Of move and jog.
   std::string mode, value;  ///< revolutions; rev/s or N m
@@ -47,6 +50,7 @@ struct BenchOptions : CanopenBusOptions {
   double phase_margin_deg = 50.0;  ///< to be kept
   double inner_delay_ms = 0.5;     ///< in the drive, from speed to torque
   double step_rev_s = 1.0;         ///< of the step that shows the change
+  double relay_nm = 0.0;           ///< torque of a relay that takes the place of the multisine; 0: none
   bool apply = false;
 };
 

@@ -48,6 +48,7 @@ void Axis::set_process(const Setpoint& setpoint) noexcept {
 
 void Axis::command(image::ProcessImage& image) noexcept {
   const double dt = image.now.period_s();
+  if (!process_given_) process_.bound = false;
   PowerSequence::Outputs power;
   step_power(dt, power);
   if (!power_.holding() || !held_) follow_feedback();
@@ -94,7 +95,9 @@ void Axis::advance(double dt, image::Nanoseconds now) noexcept {
   const bool by_itself = owner_ != AxisOwner::process;
   // A process whose axes are to lose their power brakes along the path, and they with it.
   const bool with_the_path = !by_itself && process_given_ && letting_go() && held_;
-  const bool stop_now = reaction_ >= Reaction::stop_axes || (!power_.motion_permitted() && !with_the_path) ||
+  const bool stops =
+      reaction_ >= Reaction::stop_axes && !(reaction_ <= Reaction::stop_and_power_off && goes_with_master());
+  const bool stop_now = stops || (!power_.motion_permitted() && !with_the_path) ||
                         (by_itself && reaction_ >= Reaction::stop_on_path);
   if (stop_now && !stopped_by_reaction_)
     take_away(reaction_ >= Reaction::stop_on_path ? image::JogEnd::alarm : image::JogEnd::power);
@@ -110,6 +113,12 @@ void Axis::advance(double dt, image::Nanoseconds now) noexcept {
   const bool path_ended = !process_given_;
   if (stopped_by_reaction_ && !stop_now && path_ended && !moving_ && rest_s_ > 0.01)
     stopped_by_reaction_ = false;
+}
+
+/// One that is itself at fault, or does not follow, does not.
+bool Axis::goes_with_master() const noexcept {
+  return owner_ == AxisOwner::process && process_.bound && held_ && !stopped_by_reaction_ &&
+         std::abs(following_error_) <= following_limit_;
 }
 
 void Axis::advance_process(double dt) noexcept {
@@ -325,8 +334,11 @@ void Axis::write_drive(image::ProcessImage& image, const PowerSequence::Outputs&
   out.torque_permille = torque_.command() * 10.0 * scale_.direction;
   out.halt = led.wants_halt();
   out.quick_stop = out.quick_stop || led.wants_quick_stop();
-  out.latch_source = image::LatchSource::zero_mark;
-  out.latch_arm = homing_.latch_arm();
+  // Homing looks for the zero mark; nobody measures meanwhile.
+  const bool probes = probe_armed_ && !homing_.latch_arm();
+  out.latch_source = probes ? probe_source_ : image::LatchSource::zero_mark;
+  out.latch_negative = probes && probe_negative_;
+  out.latch_arm = probes || homing_.latch_arm();
   out.position_counts = held_ ? scale_.counts(set_.x + compensation_value_) : drive_.position_counts;
   out.velocity_counts_s = held_ ? scale_.velocity_counts(set_.v) : 0.0;
   if (config_.brake.output == BrakeOutput::place)

@@ -22,6 +22,9 @@ struct Setpoint {
   double velocity = 0.0;
   double acceleration = 0.0;
   double distance_to_go = 0.0;
+  /// The axis goes with something that its stop would part it from: a tap in its hole with its spindle. A
+  /// stop at the axis' own limits waits until the process rests; the process sees to it that it does.
+  bool bound = false;
 };
 
 /// One axis: feedback to position, supervision, set-point of its owner, compensation, command to the drive.
@@ -124,6 +127,14 @@ class Axis {
   /// Operator's reset: the drive's fault is reset, a reaction's stop is taken back.
   void reset() noexcept;
 
+  // -- touch probe of the drive
+  /// The drive latches its position at the next edge of one of its probe inputs (60B8h). real-time safe.
+  void arm_probe(image::LatchSource source, bool negative_edge) noexcept;
+  void disarm_probe() noexcept { probe_armed_ = false; }
+  /// It has, since it was armed, and where; machine coordinate. real-time safe.
+  bool probe_latched() const noexcept { return probe_armed_ && drive_.latch_sequence != probe_sequence_; }
+  double probe_position() const noexcept;
+
   // -- reference
   /// Takes over a kept reference (state directory): these counts are the home position, the axis is homed.
   /// Only while the axis does not hold (before power). Methods absolute and none.
@@ -168,6 +179,7 @@ class Axis {
   // axis.cpp: the owner's set-point and the way to the drive
   void advance(double dt, image::Nanoseconds now) noexcept;
   void advance_process(double dt) noexcept;
+  bool goes_with_master() const noexcept;
   void advance_own(double dt, image::Nanoseconds now) noexcept;
   void advance_homing(double dt) noexcept;
   void advance_manual(image::Nanoseconds now) noexcept;
@@ -266,6 +278,9 @@ class Axis {
   std::array<Sent, kHistory> history_{};
   int head_ = 0;
   image::DriveFeedback drive_;
+  bool probe_armed_ = false, probe_negative_ = false;
+  image::LatchSource probe_source_ = image::LatchSource::probe_1;
+  std::uint32_t probe_sequence_ = 0;  ///< of the drive, when it was armed
   bool seen_online_ = false;
   bool seen_counts_ = false;
   std::uint32_t last_missed_ = 0;

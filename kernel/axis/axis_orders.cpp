@@ -185,6 +185,17 @@ void Axis::reset() noexcept {
   reset_left_s_ = 1.0;
 }
 
+void Axis::arm_probe(image::LatchSource source, bool negative_edge) noexcept {
+  probe_source_ = source;
+  probe_negative_ = negative_edge;
+  probe_sequence_ = drive_.latch_sequence;
+  probe_armed_ = true;
+}
+
+double Axis::probe_position() const noexcept {
+  return scale_.position(drive_.latch_counts) - sent(config_.feedback_delay).compensation;
+}
+
 void Axis::set_reference(std::int64_t reference_counts) noexcept {
   if (power_.holding()) return;
   scale_.reference_counts = reference_counts;

@@ -179,7 +179,7 @@ void Axis::supervise_switches() noexcept {
   if (of_program || into || met) {
     const bool plus = into ? set_.v > 0.0 : met ? met_plus_ : limit_plus_;
     raise(plus ? alarm::kHardLimitPlus : alarm::kHardLimitMinus, 0.0, actual_);
-    if (!stopped_by_reaction_) take_away();
+    if (!stopped_by_reaction_ && !goes_with_master()) take_away();
   }
 }
 

@@ -27,6 +27,7 @@ double wrapped(double degrees) noexcept { return degrees - 360.0 * std::round(de
 void Spindle::configure(const SpindleConfig& config, int index) {
   *this = Spindle{};
   config_ = config;
+  limit_rpm_ = config.max_rpm;
   index_ = index;
   scale_ = {config.counts_numerator, config.counts_denominator, config.count_direction, 0, 0.0};
   if (config.inverter) inverter_.configure(*config.inverter);
@@ -50,6 +51,24 @@ void Spindle::order(SpindleMode mode, double rpm) noexcept {
   raised_speed_ = raised_orient_ = false;
 }
 
+void Spindle::turn(double degrees, double rpm) noexcept {
+  const bool measures = !config_.inverter && config_.encoder;
+  if (!measures || !angle_known_ || !std::isfinite(degrees)) {
+    order(SpindleMode::stop, 0.0);
+    cannot_ = measures ? alarm::kSpindleOrientTimeout : alarm::kSpindleNoEncoder;
+    return;
+  }
+  const bool held = mode_ == SpindleMode::orient || mode_ == SpindleMode::turn;
+  const double from = total_turns() + (held ? angle_error() / 360.0 : 0.0);
+  mode_ = SpindleMode::turn;
+  adjust(rpm);
+  goal_turns_ = from + degrees / 360.0;
+  turn_s_ = ordered_rpm_ > 0.0 ? std::abs(degrees) / (6.0 * ordered_rpm_) : 0.0;
+  wait_s_ = 0.0;
+  orienting_ = oriented_ = at_speed_ = false;
+  raised_speed_ = raised_orient_ = false;
+}
+
 void Spindle::adjust(double rpm) noexcept {
   const double wish = std::isfinite(rpm) ? std::abs(rpm) : 0.0;
   ordered_rpm_ = wish > 0.0 ? std::clamp(wish, config_.min_rpm, config_.max_rpm) : 0.0;
@@ -63,6 +82,8 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   power_on_ = image.packets.bit(field(image::kMachineFields, "power_on", image::kMachineBase));
   enable_ = power_on_ && image.packets.bit(image::at(field(kSpindleFields, "enable"), base));
   const double percent = image.packets.number(image::at(field(kSpindleFields, "override"), base));
+  const double limit = image.packets.number(image::at(field(kSpindleFields, "limit"), base));
+  limit_rpm_ = limit > 0.0 ? std::min(limit, config_.max_rpm) : config_.max_rpm;
   override_ratio_ = percent > 0.0 ? std::clamp(percent, 50.0, 125.0) / 100.0 : 1.0;
 
   const auto wish =
@@ -146,11 +167,16 @@ void Spindle::give_up() noexcept {
   if ((lost_ || fault) && mode_ != SpindleMode::stop) order(SpindleMode::stop, 0.0);
 }
 
-/// Speed of the position loop of the oriented stop.
-double Spindle::orient_rpm() noexcept {
-  const double error = wrapped(config_.orient_angle - angle_deg_);
+/// From where the spindle stands to where it is to stand, degrees: the nearer way round, or all of a turn.
+double Spindle::angle_error() const noexcept {
+  if (mode_ == SpindleMode::turn) return 360.0 * (goal_turns_ - total_turns());
+  return wrapped(config_.orient_angle - angle_deg_);
+}
+
+/// Speed of the position loop that leads to an angle.
+double Spindle::held_rpm(double error, double most_rpm) noexcept {
   const double braking = std::sqrt(2.0 * config_.acceleration * std::abs(error) / 6.0) * 0.7;
-  const double speed = std::min({config_.orient_gain * std::abs(error) / 6.0, braking, config_.orient_rpm});
+  const double speed = std::min({config_.orient_gain * std::abs(error) / 6.0, braking, most_rpm});
   oriented_ = std::abs(error) <= config_.orient_window && std::abs(actual_rpm_) <= config_.zero_speed_rpm;
   return std::copysign(speed, error);
 }
@@ -158,7 +184,7 @@ double Spindle::orient_rpm() noexcept {
 /// Signed speed of the order with its override, whatever the PLC permits.
 double Spindle::ordered_speed() const noexcept {
   if ((mode_ != SpindleMode::cw && mode_ != SpindleMode::ccw) || ordered_rpm_ == 0.0) return 0.0;
-  const double most = gears_.max_rpm(config_.max_rpm);
+  const double most = std::min(gears_.max_rpm(config_.max_rpm), limit_rpm_);
   const double rpm = std::clamp(ordered_rpm_ * override_ratio_, std::min(config_.min_rpm, most), most);
   return mode_ == SpindleMode::cw ? rpm : -rpm;
 }
@@ -172,11 +198,14 @@ double Spindle::wanted_rpm() noexcept {
     case SpindleMode::ccw:
       if (!gears_.changing()) return ordered_speed();
       return std::copysign(std::min(gears_.config().change_rpm, ordered_rpm_), ordered_speed());
+    case SpindleMode::turn:
+      return held_rpm(angle_error(), std::min(ordered_rpm_, gears_.max_rpm(config_.max_rpm)));
     case SpindleMode::orient:
       break;
   }
   orienting_ = orienting_ || (marked_ && std::abs(command_rpm_) <= config_.orient_rpm);
-  return orienting_ ? orient_rpm() : std::copysign(config_.orient_rpm, command_rpm_);
+  return orienting_ ? held_rpm(angle_error(), config_.orient_rpm)
+                    : std::copysign(config_.orient_rpm, command_rpm_);
 }
 
 void Spindle::follow_drive(double wanted, double dt) noexcept {
@@ -282,15 +311,20 @@ void Spindle::supervise(double dt, bool speed_due) noexcept {
     raised_ready_ = true;
     events_.add({alarm::kSpindleNotReady, 0.0, static_cast<double>(drive_.error_code)});
   }
-  const bool orient_due = mode_ == SpindleMode::orient && enable_ && !oriented_;
+  const bool held = mode_ == SpindleMode::orient || mode_ == SpindleMode::turn;
+  const bool orient_due = held && enable_ && !oriented_;
+  const double patience = config_.orient_timeout + (mode_ == SpindleMode::turn ? turn_s_ : 0.0);
   wait_s_ = (speed_due && !at_speed_) || orient_due ? wait_s_ + dt : 0.0;
   if (speed_due && config_.at_speed_timeout > 0.0 && wait_s_ > config_.at_speed_timeout && !raised_speed_) {
     raised_speed_ = true;
     events_.add({alarm::kSpindleNotAtSpeed, ordered_speed(), actual_rpm_});
   }
-  if (orient_due && config_.orient_timeout > 0.0 && wait_s_ > config_.orient_timeout && !raised_orient_) {
+  if (orient_due && config_.orient_timeout > 0.0 && wait_s_ > patience && !raised_orient_) {
     raised_orient_ = true;
-    events_.add({alarm::kSpindleOrientTimeout, config_.orient_angle, angle_deg_});
+    const double wanted = config_.orient_angle;
+    events_.add({alarm::kSpindleOrientTimeout,
+                 mode_ == SpindleMode::turn ? 360.0 * (goal_turns_ - std::floor(goal_turns_)) : wanted,
+                 angle_deg_});
   }
 }
 
@@ -304,7 +338,7 @@ void Spindle::write_interface(image::ProcessImage& image) const noexcept {
   put(field(kSpindleFields, "run"), mode_ != SpindleMode::stop);
   put(field(kSpindleFields, "cw"), mode_ == SpindleMode::cw);
   put(field(kSpindleFields, "ccw"), mode_ == SpindleMode::ccw);
-  put(field(kSpindleFields, "orient"), mode_ == SpindleMode::orient);
+  put(field(kSpindleFields, "orient"), mode_ == SpindleMode::orient || mode_ == SpindleMode::turn);
   put(field(kSpindleFields, "at_speed"), at_speed_);
   put(field(kSpindleFields, "zero_speed"), zero_speed_);
   put(field(kSpindleFields, "oriented"), oriented_);
@@ -321,6 +355,7 @@ bool Spindle::settled() const noexcept {
     case SpindleMode::stop:
       return zero_speed_;
     case SpindleMode::orient:
+    case SpindleMode::turn:
       return oriented_;
     default:
       return at_speed_;

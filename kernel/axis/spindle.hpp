@@ -11,7 +11,7 @@
 
 namespace servogate::axis {
 
-enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient };
+enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient, turn };
 
 /// Where an encoder stands, as the master of a path.
 struct SpindleAngle {
@@ -30,6 +30,9 @@ struct SpindleAngle {
 /// lost; then the order is stop, and nothing turns again unasked. The same order is given when a drive with a
 /// source of its own is lost or in fault; whether that spindle stands is not known then.
 ///
+/// S.limit of the PLC bounds the speed whatever is ordered (the chuck and the work in it), at once and by the
+/// ramp.
+///
 /// With gear ranges an order to turn chooses the gear (the PLC by S.gear_wish, otherwise the slowest that
 /// reaches the speed); another one than that in force brings the spindle to rest, or to its speed for
 /// changing, changes, and then turns. A speed that is only adjusted stays within the gear. A gear that is not
@@ -45,6 +48,10 @@ class Spindle {
   /// (an oriented stop without an encoder, a direction without a relay) is a stop and an alarm. real-time
   /// safe.
   void order(SpindleMode mode, double rpm) noexcept;
+  /// On by an angle, + clockwise, at a speed, from where an oriented stop or a turn before it leads; it is
+  /// held there as an oriented stop is. Where the angle is not known it is a stop and an alarm. real-time
+  /// safe.
+  void turn(double degrees, double rpm) noexcept;
   /// Another speed of the mode in force, as often as is liked: what is waited for goes on. real-time safe.
   void adjust(double rpm) noexcept;
   SpindleMode mode() const noexcept { return mode_; }
@@ -58,7 +65,7 @@ class Spindle {
   bool present(image::AlarmNumber number) const noexcept;
   void reset() noexcept;
 
-  /// Commanded state reached: at speed, standing, or oriented. real-time safe.
+  /// Commanded state reached: at speed, standing, or at its angle. real-time safe.
   bool settled() const noexcept;
   bool at_speed() const noexcept { return at_speed_; }
   bool zero_speed() const noexcept { return zero_speed_; }
@@ -80,7 +87,9 @@ class Spindle {
   double ordered_speed() const noexcept;
   void change_gear(image::ProcessImage& image, double dt) noexcept;
   double wanted_rpm() noexcept;
-  double orient_rpm() noexcept;
+  double held_rpm(double error_deg, double most_rpm) noexcept;
+  double angle_error() const noexcept;
+  double total_turns() const noexcept { return static_cast<double>(master_.turns) + master_.part; }
   void supervise(double dt, bool speed_due) noexcept;
   void write_interface(image::ProcessImage& image) const noexcept;
 
@@ -106,13 +115,16 @@ class Spindle {
   image::AlarmNumber cannot_ = 0;  ///< why the last order was none for this spindle
   bool enable_ = false;
   double override_ratio_ = 1.0;
+  double limit_rpm_ = 0.0;  ///< of the machine, or the PLC's below it
   double command_rpm_ = 0.0;
   double actual_rpm_ = 0.0;
   double angle_deg_ = 0.0;
   SpindleAngle master_;
   bool began_ = false, angle_known_ = false;  ///< master_ counts from angle_zero_, until the drive is gone
   std::int64_t first_counts_ = 0, angle_zero_ = 0;
-  bool orienting_ = false;  ///< slow enough, position loop closed
+  bool orienting_ = false;   ///< slow enough, position loop closed
+  double goal_turns_ = 0.0;  ///< of a turn by an angle, as total_turns() counts
+  double turn_s_ = 0.0;      ///< that it takes at its speed
   double wait_s_ = 0.0;
   double off_s_ = 0.0;
   bool at_speed_ = false, zero_speed_ = true, oriented_ = false;

@@ -18,7 +18,6 @@ enum class EventKind : std::uint8_t {
   write,
   wait,
   spindle_mark,  ///< until spindle `number` passes its zero mark
-  tap,           ///< the spindle is turned `mode` at `value` rpm where the tap that follows asks for it
   probe_arm,     ///< the motion that follows ends where the probe touches
   probe_end,     ///< and did not touch
   message,
@@ -30,10 +29,11 @@ enum class EventKind : std::uint8_t {
   stop,             ///< M00
   optional_stop,    ///< M01
   block_end,        ///< STEP mode: waits for the operator between blocks
-  window,   ///< axis `number` counts as in position within `value`, mm or degrees; 0: as the machine has it
-  warning,  ///< at once: the control does something otherwise than the program asks
-  error,    ///< the interpreter found an error in the next block
-  end,      ///< M02, M30 or the last line
+  window,  ///< axis `number` counts as in position within `value`, mm or degrees; 0: as the machine has it
+  feed_override,  ///< it counts from here on, with `flag`
+  warning,        ///< at once: the control does something otherwise than the program asks
+  error,          ///< the interpreter found an error in the next block
+  end,            ///< M02, M30 or the last line
 };
 
 /// path::Tag::command of this room: the run above, and below how many of its blocks have been executed. Equal
@@ -56,9 +56,10 @@ struct Event {
   double value = 0.0;       ///< seconds, speed, value to write or to compare with
   double limit = 0.0;       ///< rpm limit of a surface speed
   double center = 0.0;      ///< where the radius of a surface speed begins
+  double angle = 0.0;       ///< by which a spindle turns, degrees
   std::uint8_t number = 0;  ///< spindle, axis, or another process, from 0
   program::SpindleMode mode = program::SpindleMode::keep;
-  bool flag = false;  ///< surface speed; rewind
+  bool flag = false;  ///< surface speed; rewind; effective
   program::Wait::Compare compare = program::Wait::Compare::eq;
   image::Place place;
   std::array<char, image::kMaxCharacters> characters{};

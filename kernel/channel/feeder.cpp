@@ -36,7 +36,7 @@ program::OperatorSwitches switches_of(const image::Packets& packets, int process
 /// What was cut before it is not what the machine would cut now.
 bool bars(EventKind kind) {
   return kind == EventKind::tool || kind == EventKind::spindle || kind == EventKind::m_function ||
-         kind == EventKind::h_function;
+         kind == EventKind::h_function || kind == EventKind::feed_override;
 }
 
 bool stops(const program::Command& command) {
@@ -47,7 +47,10 @@ bool stops(const program::Command& command) {
 }  // namespace
 
 Feeder::Feeder(path::Config config, AxisMap axes, Link& link, int process)
-    : elements_(config, std::move(axes), SpindleAt::fastest),
+    : config_(config),
+      axes_(std::move(axes)),
+      elements_(config, axes_, SpindleAt::fastest),
+      infeed_(config),
       link_(link),
       planner_(config, link.track),
       ways_(config, link.way),
@@ -168,8 +171,8 @@ void Feeder::begin(const FeederOrder& order) {
   warned_ = 0;
   raised_.clear();
   wanted_.clear();
-  tap_.reset();
-  tap_back_.reset();
+  tap_.clear();
+  infeed_.restart();
   supplied_event_ = 0;
 }
 
@@ -368,7 +371,10 @@ bool Feeder::move(const program::Command& command) {
   const path::Vector from = planner_.position();
   path::Element element = elements_.element(command, from);
   element.tag = tag(command);
+  const bool thread = element.lock.kind != path::Lock::Kind::none;
+  if (thread) infeed_.put(element.lock);
   if (planner_.add(element)) {
+    if (!thread) infeed_.take(from, element.to);
     ways_.add(element, from);
     return true;
   }

@@ -12,7 +12,9 @@
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "kernel/channel/event.hpp"
+#include "kernel/channel/motion/infeed.hpp"
 #include "kernel/channel/motion/path_elements.hpp"
+#include "kernel/channel/motion/tap_commands.hpp"
 #include "kernel/channel/motion/ways.hpp"
 #include "kernel/channel/neighbours.hpp"
 #include "kernel/channel/program_texts.hpp"
@@ -157,7 +159,7 @@ class Feeder {
   void end();
   bool move(const program::Command& command);
   bool take_tap(const program::Command& command);
-  void tap_back(const program::Command& command);
+  void tap();
   void probe(const program::Command& command);
   void take_touch(const FeederOrder& order);
   void refuse_foreign(int axis, const program::Command& command);
@@ -170,7 +172,10 @@ class Feeder {
   path::Tag tag(const program::Command& command) const;
   text::Finding placed(text::Finding finding, const program::Command& command) const;
 
+  path::Config config_;
+  AxisMap axes_;
   PathElements elements_;
+  Infeed infeed_;
   Link& link_;
   path::Planner planner_;
   Ways ways_;
@@ -185,9 +190,7 @@ class Feeder {
     text::Finding missing;
   };
   std::vector<Wanted> wanted_;
-  /// The way in of a tap and what its spindle does then, until its way out is there.
-  std::optional<program::Command> tap_;
-  std::optional<program::Spindle> tap_back_;
+  TapCommands tap_;
   std::uint32_t supplied_event_ = 0;  ///< whose process is at rest now; 0: none
   InterpreterFactory factory_;
   RestartFactory once_;  ///< instead, for the next run

@@ -8,50 +8,39 @@
 
 namespace servogate::channel {
 
-/// A tap is three commands: the way in, the spindle reversed, the way out. True: the command is part of one.
+/// True: the command is part of a tap, or ends the program because it is none.
 bool Feeder::take_tap(const program::Command& command) {
-  const auto* thread = std::get_if<program::Thread>(&command.what);
-  const bool taps = thread != nullptr && thread->tap;
-  if (!tap_) {
-    if (taps) tap_ = command;
-    return taps;
+  switch (tap_.take(command, elements_, planner_.position())) {
+    case TapCommands::Taken::no:
+      return false;
+    case TapCommands::Taken::wrong:
+      fail(placed(tap_.flaw(), command));
+      return true;
+    case TapCommands::Taken::yes:
+      if (const int axis = elements_.foreign_axis(command, position_); axis >= 0)
+        refuse_foreign(axis, command);
+      return true;
+    case TapCommands::Taken::complete:
+      tap();
+      return true;
   }
-  if (const auto* spindle = std::get_if<program::Spindle>(&command.what); spindle != nullptr && !tap_back_) {
-    tap_back_ = *spindle;
-    return true;
-  }
-  if (taps && tap_back_)
-    tap_back(command);
-  else
-    fail(placed(tap_open(), command));
   return true;
 }
 
-/// Both ways are planned at once, behind the event that says what the spindle does between them.
-void Feeder::tap_back(const program::Command& command) {
-  const program::Command in = *std::exchange(tap_, std::nullopt);
-  if (const int axis = elements_.foreign_axis(in, position_); axis >= 0) return refuse_foreign(axis, in);
-  const program::Spindle back = *std::exchange(tap_back_, std::nullopt);
-  Event e;
-  e.number = back.number;
-  e.mode = back.mode;
-  e.value = back.speed;
-  event(EventKind::tap, in, e);
-  ways_.bar();
+/// All ways of a tap are planned at once.
+void Feeder::tap() {
   const path::Vector from = planner_.position();
-  path::Element way_in = elements_.element(in, from);
-  way_in.tag = tag(in);
-  elements_.take(back);
-  path::Element way_out = elements_.element(command, way_in.to);
-  way_out.tag = tag(command);
-  way_out.lock.kind = path::Lock::Kind::tap_out;
-  constexpr double kSamePlace = 1e-6;  // mm
-  for (std::size_t i = 0; i < from.size(); ++i)
-    if (std::abs(way_out.to[i] - from[i]) > kSamePlace) return fail(placed(tap_open(), command));
-  way_out.to = from;
-  if (!planner_.add(way_in) || !planner_.add(way_out))
-    return fail(placed(cannot_drive(planner_.last_flaw()), command));
+  if (auto leaves = tap_leaves_travel(config_, axes_, from, tap_.legs()))
+    return fail(placed(std::move(*leaves), tap_.legs().front().command));
+  ways_.bar();
   planner_.rest();
+  for (const TapCommands::Leg& leg : tap_.legs()) {
+    path::Element element = leg.element;
+    element.tag = tag(leg.command);
+    if (!planner_.add(element)) return fail(placed(cannot_drive(planner_.last_flaw()), leg.command));
+  }
+  planner_.rest();
+  tap_.clear();
 }
 
 /// Where it ends is not known before it has: nothing behind it is read until then.

@@ -30,6 +30,12 @@ class Translation {
     order.event.number = s.number;
     order.event.mode = s.mode;
     order.event.flag = s.surface_speed;
+    if (s.mode == program::SpindleMode::turn) order.event.angle = s.turn_deg;
+    return order;
+  }
+  Result operator()(const program::FeedOverride& o) const {
+    ForCycle order{EventKind::feed_override, {}};
+    order.event.flag = o.effective;
     return order;
   }
   Result operator()(const program::SpindleMark&) const { return ForCycle{EventKind::spindle_mark, {}}; }

@@ -34,7 +34,7 @@ Process::Process(const ProcessConfig& config)
       base_(image::process_base(config.index)),
       meeting_(config.meeting != nullptr ? *config.meeting : alone_) {
   feeder_.set_neighbours(meeting_.count(), config.supplier);
-  probing_.configure(config.probe);
+  probing_.configure(config.probe, config.probe_latch);
 }
 
 Process::~Process() = default;
@@ -199,7 +199,7 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   else
     follower_.resume();
   const double by_plc = k.number(at(kFeedOverride, base_)) / 100.0;
-  follower_.set_override(by_plc > 0.0 ? by_plc : override_);
+  follower_.set_override(!override_effective_ ? 1.0 : by_plc > 0.0 ? by_plc : override_);
   const axis::Spindle* turns = spindle(0, c);
   follower_.set_spindle(
       turns == nullptr
@@ -214,7 +214,7 @@ void Process::drive_axes(const path::Sample& sample, cycle::ProcessContext& c) n
     const std::size_t i = own.path;
     if (a.owner() == image::AxisOwner::process)
       a.set_process({sample.position[i], sample.velocity[i], sample.acceleration[i],
-                     sample.target[i] - sample.position[i]});
+                     sample.target[i] - sample.position[i], sample.master.bound});
   }
 }
 
@@ -248,10 +248,11 @@ void Process::at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept {
 }
 
 void Process::raise(image::AlarmNumber number, const Event& event, double value, double limit,
-                    cycle::ProcessContext& c) noexcept {
+                    cycle::ProcessContext& c, int axis) noexcept {
   image::AlarmRecord r;
   r.number = number;
   r.process = static_cast<std::int8_t>(config_.index);
+  r.axis = static_cast<std::int8_t>(axis);
   r.line = event.line;
   r.file = event.file;
   r.run = generation_;

@@ -23,8 +23,9 @@ struct ProcessConfig {
   path::Config path;  ///< path axes, limits, period
   AxisMap axes;
   double handshake_timeout_s = 10.0;
-  double in_position_timeout_s = 5.0;      ///< of the wait at exact stops, beside the axis' own alarm
-  std::optional<axis::SwitchPlace> probe;  ///< TRUE while it is deflected
+  double in_position_timeout_s = 5.0;             ///< of the wait at exact stops, beside the axis' own alarm
+  std::optional<axis::SwitchPlace> probe;         ///< TRUE while it is deflected
+  std::optional<image::LatchSource> probe_latch;  ///< the axes' drives latch its touches
   Meeting* meeting = nullptr;  ///< of all processes, outlives this one; nullptr: it is the only one
   ProgramSupplier supplier;    ///< of programs for the others
 };
@@ -162,10 +163,17 @@ class Process final : public cycle::ProcessInCycle {
   // process_masters.cpp
   path::MasterReading master(const cycle::ProcessContext& c) const noexcept;
   void follow_master(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
-  void raise_of_motion(image::AlarmNumber number, double value, double limit,
-                       cycle::ProcessContext& c) noexcept;
+  void raise_of_motion(image::AlarmNumber number, double value, double limit, cycle::ProcessContext& c,
+                       int axis = -1) noexcept;
   bool passes_mark(const Event& event, cycle::ProcessContext& c) noexcept;
+  void tell_of_master(const path::ByMaster& master, const axis::Spindle* turns,
+                      cycle::ProcessContext& c) noexcept;
+  void order_tap(const path::ByMaster& master, axis::Spindle& turns) noexcept;
   bool arm_probe(const Event& event, cycle::ProcessContext& c) noexcept;
+  std::uint32_t own_mask() const noexcept;
+  void disarm_drives(cycle::ProcessContext& c) noexcept;
+  bool miss_probe(const Event& event, cycle::ProcessContext& c) noexcept;
+  void watch_idle_probe(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
   void watch_probe(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
   // process_neighbours.cpp
   bool start_other(const Event& event, cycle::ProcessContext& c) noexcept;
@@ -181,7 +189,7 @@ class Process final : public cycle::ProcessInCycle {
   axis::Spindle* spindle(std::size_t n, const cycle::ProcessContext& c) const noexcept;
   void write_status(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
   void raise(image::AlarmNumber number, const Event& event, double value, double limit,
-             cycle::ProcessContext& c) noexcept;
+             cycle::ProcessContext& c, int axis = -1) noexcept;
   bool operator_waits() const noexcept {
     return stage_ == Stage::waiting &&
            (event_.kind == EventKind::stop || event_.kind == EventKind::optional_stop ||
@@ -217,6 +225,8 @@ class Process final : public cycle::ProcessInCycle {
   bool block_by_block_ = false;
   bool go_on_ = false;  ///< start or step while an event waits for the operator
   double override_ = 1.0;
+  bool override_effective_ = true;  ///< a program may say that it does not count
+  bool spindle_turned_ = false;     ///< the turn by an angle that the path waits for has been ordered
   Stage stage_ = Stage::none;
   Event event_;
   double waited_s_ = 0.0;
@@ -231,11 +241,13 @@ class Process final : public cycle::ProcessInCycle {
   std::size_t function_count_ = 0;
   std::uint8_t surface_spindle_ = 0;  ///< of this process, that turns by a cutting speed
   double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
-  Event tap_;  ///< what the spindle of the tap under way does at the depth
-  bool tap_turned_ = false, tap_halted_ = false, master_told_ = false;
+  bool tapping_ = false, tap_halted_ = false, master_told_ = false;
+  std::int8_t tap_turn_ = 0;  ///< how the spindle was turned last for the tap under way
+  double tap_rpm_ = 0.0;      ///< as it turned before
   double tap_overshoot_ = 0.0;
   double mark_ = -1.0;  ///< part of a revolution in the last cycle of a wait for the mark
   Probing probing_;
+  bool probe_told_ = false;  ///< why it does not measure
   double last_speed_ = -1.0;
   path::Tag shown_;               ///< of the motion that the status has shown
   double to_go_ = 0.0;            ///< path to the end of its element

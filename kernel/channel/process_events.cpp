@@ -52,6 +52,8 @@ axis::SpindleMode spindle_mode(program::SpindleMode mode) noexcept {
       return axis::SpindleMode::ccw;
     case program::SpindleMode::orient:
       return axis::SpindleMode::orient;
+    case program::SpindleMode::turn:
+      return axis::SpindleMode::turn;
     default:
       return axis::SpindleMode::stop;
   }
@@ -94,6 +96,7 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       if (!handshake(HandshakeWord::t, e.code, e.code2, e, c)) return false;
       c.image.processes[static_cast<std::size_t>(config_.index)].tool = static_cast<std::uint16_t>(e.code);
       row_ = e.code2;
+      probing_.forget();  // it may be put away
       return true;
     case EventKind::spindle:
       return order_spindle(e, c);
@@ -111,15 +114,10 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       return holds(c.image.packets.number(e.place), e.compare, e.value);
     case EventKind::spindle_mark:
       return passes_mark(e, c);
-    case EventKind::tap:
-      tap_ = e;
-      return true;
     case EventKind::probe_arm:
       return arm_probe(e, c);
     case EventKind::probe_end:
-      if (stage_ == Stage::entered) raise(alarm::kProbeMissed, e, 0.0, 0.0, c);
-      stage_ = Stage::waiting;
-      return false;
+      return miss_probe(e, c);
     case EventKind::message:
       c.image.processes[static_cast<std::size_t>(config_.index)].message = e.code;
       return true;
@@ -135,6 +133,9 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
     }
     case EventKind::window:
       if (axis::Axis& a = c.axes[e.number]; a.process() == config_.index) a.set_in_position_window(e.value);
+      return true;
+    case EventKind::feed_override:
+      override_effective_ = e.flag;
       return true;
     case EventKind::process_start:
       return start_other(e, c);
@@ -194,6 +195,16 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
   axis::Spindle* told = this->spindle(e.number, c);
   if (told == nullptr) return true;
   axis::Spindle& spindle = *told;
+  if (e.mode == program::SpindleMode::turn) {
+    if (stage_ == Stage::entered) spindle_turned_ = false;
+    surface_speed_ = 0.0;
+    stage_ = Stage::waiting;
+    if (spindle_turned_) return spindle.oriented();
+    if (spindle.mode() == axis::SpindleMode::orient && !spindle.oriented()) return false;
+    spindle.turn(e.angle, e.value);
+    spindle_turned_ = true;
+    return false;
+  }
   if (stage_ == Stage::entered) {
     surface_spindle_ = e.number;
     surface_speed_ = e.flag ? e.value : 0.0;

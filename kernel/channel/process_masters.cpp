@@ -21,17 +21,26 @@ image::AlarmNumber alarm_of(path::MasterFault fault) noexcept {
       return alarm::kThreadTooFast;
     case path::MasterFault::too_short:
       return alarm::kThreadTooShort;
+    case path::MasterFault::stands:
+      return alarm::kThreadSpindleStands;
+    case path::MasterFault::overshoot:
+      return alarm::kTapTooDeep;
+    case path::MasterFault::no_turn:
+      return alarm::kTapNoTurn;
     case path::MasterFault::none:
       break;
   }
   return 0;
 }
 
-axis::SpindleMode turning(program::SpindleMode mode) noexcept {
-  return mode == program::SpindleMode::cw    ? axis::SpindleMode::cw
-         : mode == program::SpindleMode::ccw ? axis::SpindleMode::ccw
-                                             : axis::SpindleMode::stop;
+/// Whatever else stops the program: the tap may have broken in the part.
+bool always_told(path::MasterFault fault) noexcept {
+  return fault == path::MasterFault::overshoot || fault == path::MasterFault::no_turn;
 }
+
+constexpr double kProbeLate = 0.01;  // s in which a touch at the end of its motion may still come
+constexpr double kProbeCalms = 1.0;  // s
+constexpr double kProbeArms = 0.1;   // s in which a drive surely has its order to latch
 
 }  // namespace
 
@@ -43,6 +52,8 @@ path::MasterReading Process::master(const cycle::ProcessContext& c) const noexce
   const axis::SpindleAngle& angle = turns->angle();
   reading.valid = angle.valid;
   reading.ready = turns->at_speed();
+  const bool told = turns->mode() == axis::SpindleMode::cw || turns->mode() == axis::SpindleMode::ccw;
+  reading.ordered = told ? turns->ordered_rpm() / 60.0 : 0.0;
   reading.turns = angle.turns;
   reading.part = angle.part;
   reading.at_ns = angle.at_ns;
@@ -53,41 +64,56 @@ path::MasterReading Process::master(const cycle::ProcessContext& c) const noexce
 }
 
 /// About the block in motion.
-void Process::raise_of_motion(image::AlarmNumber number, double value, double limit,
-                              cycle::ProcessContext& c) noexcept {
+void Process::raise_of_motion(image::AlarmNumber number, double value, double limit, cycle::ProcessContext& c,
+                              int axis) noexcept {
   Event at;
   at.line = shown_.line;
   at.file = static_cast<std::int16_t>(shown_.file);
   at.block = shown_.block;
-  raise(number, at, value, limit, c);
+  raise(number, at, value, limit, c, axis);
 }
 
 void Process::follow_master(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
   const path::ByMaster& master = sample.master;
   if (!master.underway) {
-    if (tap_turned_) tap_overshoot_ = master.overshoot;
-    master_told_ = tap_turned_ = tap_halted_ = false;
+    if (tapping_) tap_overshoot_ = master.overshoot;
+    master_told_ = tapping_ = false;
     return;
   }
   axis::Spindle* turns = spindle(0, c);
-  if (!master_told_ && !stopping_) {
-    const bool blind = turns == nullptr || turns->config().inverter || !turns->config().encoder;
-    master_told_ = blind || master.leaving;
-    if (blind)
-      raise_of_motion(alarm::kThreadNoEncoder, 0.0, 0.0, c);
-    else if (master.fault != path::MasterFault::none)
-      raise_of_motion(alarm_of(master.fault), master.value, master.limit, c);
-    else if (master.leaving)
-      raise_of_motion(alarm::kThreadHeld, 0.0, 0.0, c);
+  tell_of_master(master, turns, c);
+  if (turns == nullptr || !master.taps) return;
+  if (!tapping_) {
+    tapping_ = true;
+    tap_halted_ = false;
+    tap_turn_ = 0;
+    tap_rpm_ = turns->ordered_rpm();
   }
-  if (turns == nullptr) return;
-  if (master.halt && !tap_halted_) {
-    tap_halted_ = true;
-    turns->order(axis::SpindleMode::stop, 0.0);
-  } else if (master.reverse && !tap_turned_ && !tap_halted_) {
-    tap_turned_ = true;
-    turns->order(turning(tap_.mode), tap_.value > 0.0 ? tap_.value : turns->ordered_rpm());
+  order_tap(master, *turns);
+}
+
+void Process::tell_of_master(const path::ByMaster& master, const axis::Spindle* turns,
+                             cycle::ProcessContext& c) noexcept {
+  if (master_told_ || (stopping_ && !always_told(master.fault))) return;
+  const bool blind = turns == nullptr || turns->config().inverter || !turns->config().encoder;
+  master_told_ = blind || master.leaving;
+  if (blind)
+    raise_of_motion(alarm::kThreadNoEncoder, 0.0, 0.0, c);
+  else if (master.fault != path::MasterFault::none)
+    raise_of_motion(alarm_of(master.fault), master.value, master.limit, c);
+  else if (master.leaving)
+    raise_of_motion(alarm::kThreadHeld, 0.0, 0.0, c);
+}
+
+void Process::order_tap(const path::ByMaster& master, axis::Spindle& turns) noexcept {
+  if (master.halt) {
+    if (!tap_halted_) turns.order(axis::SpindleMode::stop, 0.0);
+  } else if (master.turn != 0 && master.turn != tap_turn_) {
+    tap_turn_ = master.turn;
+    turns.order(master.turn > 0 ? axis::SpindleMode::cw : axis::SpindleMode::ccw,
+                master.turn_rpm > 0.0 ? master.turn_rpm : tap_rpm_);
   }
+  tap_halted_ = master.halt;
 }
 
 /// In the cycle in which the angle passes a whole revolution, as of the time when a set-point acts.
@@ -107,31 +133,84 @@ bool Process::passes_mark(const Event& e, cycle::ProcessContext& c) noexcept {
   return before >= 0.0 && std::abs(part - before) > 0.5;
 }
 
-/// False: the path does not go on.
+/// False: the path does not go on. A probe that has just come free may still bounce.
 bool Process::arm_probe(const Event& e, cycle::ProcessContext& c) noexcept {
-  if (stage_ == Stage::waiting) return false;
-  if (!probing_.present() || probing_.deflected()) {
+  if (stage_ == Stage::entered) {
+    waited_s_ = 0.0;
+    if (probing_.latch())
+      for (const OwnAxis& own : own_axes())
+        c.axes[own.machine].arm_probe(*probing_.latch(), probing_.inverted());
+  }
+  stage_ = Stage::waiting;
+  if (probe_told_) return false;
+  waited_s_ += seconds(c);
+  if (probing_.latch() && waited_s_ < kProbeArms) return false;
+  const bool bounces = probing_.present() && !probing_.settled();
+  if (bounces && waited_s_ < kProbeCalms) return false;
+  if (!probing_.present() || probing_.deflected() || bounces) {
     raise(probing_.present() ? alarm::kProbeStuck : alarm::kProbeNone, e, 0.0, 0.0, c);
-    stage_ = Stage::waiting;
+    probe_told_ = true;
     return false;
   }
-  probing_.arm();
+  probing_.arm(own_mask());
   return true;
+}
+
+std::uint32_t Process::own_mask() const noexcept {
+  std::uint32_t mask = 0;
+  for (const OwnAxis& own : own_axes()) mask |= std::uint32_t{1} << own.machine;
+  return mask;
+}
+
+void Process::disarm_drives(cycle::ProcessContext& c) noexcept {
+  for (const OwnAxis& own : own_axes()) c.axes[own.machine].disarm_probe();
+}
+
+/// At the end of a measuring motion: a touch in the cycle of the arrival is one, and its edge may come later.
+bool Process::miss_probe(const Event& e, cycle::ProcessContext& c) noexcept {
+  if (stage_ == Stage::entered) waited_s_ = 0.0;
+  stage_ = Stage::waiting;
+  if (probe_told_ || probing_.touched()) return false;
+  waited_s_ += seconds(c);
+  if (waited_s_ <= kProbeLate) return false;
+  raise(alarm::kProbeMissed, e, 0.0, 0.0, c);
+  probe_told_ = true;
+  return false;
+}
+
+/// Outside of measuring motions.
+void Process::watch_idle_probe(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
+  if (probe_told_) return;
+  if (probing_.stuck()) {
+    raise_of_motion(alarm::kProbeNotFree, probing_.away(), Probing::kRelease, c);
+    probe_told_ = true;
+  } else if (probing_.has_touched() && sample.rapid && sample.feed > 0.0) {
+    raise_of_motion(alarm::kProbeInRapid, 0.0, 0.0, c);
+    probe_told_ = true;
+  }
 }
 
 /// The motion ends where the probe touches; what it had still to go is dropped, and the feeder goes on from
 /// where it rests.
 void Process::watch_probe(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
   if (!running_ || stopping_) return;
-  if (!probing_.armed()) {
-    if (probing_.has_touched() && sample.rapid && sample.feed > 0.0)
-      raise_of_motion(alarm::kProbeInRapid, 0.0, 0.0, c);
-    return;
-  }
+  if (!probing_.armed()) return watch_idle_probe(sample, c);
   if (!probing_.touched()) return;
   if (sample.state != path::FollowerState::stopped) return follower_.stop();
-  if (!probing_.known() || events_read_ >= events_end_) return;
-  link_.events.free_below(++events_read_);  // of the end that was not reached
+  if (!probing_.known()) {
+    if (probing_.unlatched() >= 0 && !probe_told_) {
+      raise_of_motion(alarm::kProbeNotLatched, 0.0, Probing::kLatchPatience, c, probing_.unlatched());
+      probe_told_ = true;
+    }
+    return;
+  }
+  // The event of the end that was not reached goes; one that had begun ends.
+  if (stage_ != Stage::none && event_.kind == EventKind::probe_end)
+    stage_ = Stage::none;
+  else if (events_read_ < events_end_)
+    link_.events.free_below(++events_read_);
+  else
+    return;
   FeederOrder order;
   order.kind = FeederOrder::Kind::probed;
   order.generation = generation_;
@@ -140,6 +219,7 @@ void Process::watch_probe(const path::Sample& sample, cycle::ProcessContext& c) 
   order.touched = probing_.at();
   link_.orders.push(order);
   probing_.disarm();
+  disarm_drives(c);
 }
 
 }  // namespace servogate::channel

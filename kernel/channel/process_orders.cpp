@@ -109,10 +109,11 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   status.run = generation_;
   status.typed = manual_data_;
   forget_ = false;
+  override_effective_ = true;
   stopping_ = held_ = go_on_ = false;
   forget_beside();
-  probing_.disarm();
-  master_told_ = tap_turned_ = tap_halted_ = false;
+  probing_.forget();
+  probe_told_ = master_told_ = tapping_ = tap_halted_ = false;
   stage_ = Stage::none;
   last_speed_ = -1.0;
   state_ = ProcessState::running;
@@ -122,11 +123,13 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
 
 void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   running_ = stopping_ = held_ = false;
+  override_effective_ = true;
   for (const OwnAxis& own : own_axes()) c.axes[own.machine].set_in_position_window(0.0);
   forget_beside();
   forget_neighbours();
   state_ = state;
   stage_ = Stage::none;
+  disarm_drives(c);
   handshake_.cancel(c.image, base_);
   if (state != ProcessState::ended) {
     follower_.stop();

@@ -201,6 +201,10 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
     out.file = shown_.file;
   }
   out.override_ratio = follower_.override_ratio();
+  out.by_spindle = running_ && sample.master.locked;
+  out.holds_later = running_ && follower_.holds_later();
+  out.off_spindle_mm = out.by_spindle ? sample.master.phase_error : 0.0;
+  if (sample.master.underway && sample.master.taps) out.tap_overshoot_mm = sample.master.overshoot;
   out.starved = sample.starved;
   if (sample.starved != starved_ && running_) {
     image::AlarmRecord r;

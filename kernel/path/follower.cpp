@@ -138,12 +138,15 @@ void Follower::pass_markers() noexcept {
 
 void Follower::start() noexcept {
   pass_markers();
-  if (wait_stop_ || wait_event_ || dropping_ || wants_rest()) return;
-  if (const Span* span = window_.span(0); span != nullptr && span->final) {
-    if (span->terms.feed.lock.kind != Lock::Kind::none) {
-      if (begin_by_master()) enter();
-      return;
-    }
+  if (wait_stop_ || wait_event_ || dropping_ || rest_asked()) return;
+  const Span* span = window_.span(0);
+  const bool by_angle = span != nullptr && span->terms.feed.lock.kind != Lock::Kind::none;
+  if (by_angle) {  // whether its spindle stands is its own affair
+    if (span->final && begin_by_master()) enter();
+    return;
+  }
+  if (spindle_stands()) return;
+  if (span != nullptr && span->final) {
     enter();
     motion_.begin(window_, wish());
   } else if (const Entry* course = window_.course(); course != nullptr) {

@@ -27,12 +27,15 @@ struct ByMaster {
   bool waits = false;                     ///< for its angle
   bool leaving = false;                   ///< off its master: it slows down, and goes off the path
   bool locked = false;                    ///< behind its lead-in, its angle is the master's
-  bool reverse = false;                   ///< a tap asks for the reversal of its spindle, from then on
-  bool halt = false;                      ///< a tap that is given up asks for its spindle to stop
+  bool taps = false;                      ///< a tap, otherwise a thread
+  bool bound = false;                     ///< MasterMotion::bound()
+  bool halt = false;                      ///< a tap asks for its spindle to stand
+  std::int8_t turn = 0;                   ///< how it asks it to turn from here on (Lock::turn); 0: as it does
+  double turn_rpm = 0.0;                  ///< and how fast; 0: as before
   MasterFault fault = MasterFault::none;  ///< why it is being left
   double value = 0.0, limit = 0.0;        ///< of the fault, see MasterFault
   double phase_error = 0.0;               ///< mm of path, MasterMotion::phase_error()
-  double overshoot = 0.0;                 ///< mm that a tap went beyond its depth
+  double overshoot = 0.0;  ///< mm that a tap went beyond its depth; below 0: it has not reached it
 };
 
 /// The set-point of one cycle, of the axes.
@@ -78,6 +81,10 @@ class Follower {
   void set_master(const MasterReading& reading) noexcept;
   /// The path rests only because the spindle does.
   bool waits_for_spindle() const noexcept { return !rest_asked() && spindle_stands() && at_rest(); }
+  /// It is to rest, and goes on all the same: to the end of the thread, or until the tap has left its hole.
+  bool holds_later() const noexcept {
+    return rest_asked() && !stopping_ && by_master_ && !at_rest() && !master_.leaving();
+  }
   /// Goes on behind the event that is being reported; ignored otherwise.
   void release_event() noexcept;
   /// Goes on behind an exact stop that waits; ignored otherwise.
@@ -124,6 +131,7 @@ class Follower {
   bool begin_by_master() noexcept;
   void follow_master() noexcept;
   void leave_spans_behind() noexcept;
+  void begin_retract() noexcept;
   void move_off_path() noexcept;
   void place_master_on_axes() noexcept;
   void show_master() noexcept;
@@ -152,6 +160,7 @@ class Follower {
   Vector along_{};          ///< the most that each axis moves for a path of 1, on that run
   double run_begin_ = 0.0;  ///< of the first span in the run
   bool by_master_ = false, off_path_ = false;
+  int legs_behind_ = 0;  ///< of a tap
 
   bool in_span_ = false;     ///< the first entry is a span or a course that is being driven
   bool on_course_ = false;   ///< and it is a course

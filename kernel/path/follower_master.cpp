@@ -22,6 +22,7 @@ bool Follower::begin_by_master() noexcept {
   if (!master_.begin(window_)) return false;
   by_master_ = true;
   off_path_ = false;
+  legs_behind_ = 0;
   run_begin_ = 0.0;
   retract_.clear();
   along_ = Vector{};
@@ -44,8 +45,8 @@ bool Follower::begin_by_master() noexcept {
 
 void Follower::follow_master() noexcept {
   const bool rests = master_.left();
-  const bool leave = stopping_ || (hold_ && config_.threads.hold_retracts);
-  master_.step(estimate_, reading_, wants_rest(), leave);
+  const bool leave = stopping_ || (hold_ && config_.threads.hold_retracts && !master_.taps());
+  master_.step(estimate_, reading_, rest_asked(), leave);
   if (rests) retract_.path_rests(config_);
   if (master_.leaving()) return move_off_path();
   leave_spans_behind();
@@ -56,25 +57,38 @@ void Follower::follow_master() noexcept {
   track_.pieces.free_below(span.first_piece + span.pieces);
 }
 
-/// The way in of a tap ends where its spindle has turned round.
+/// A leg of a tap ends where its spindle has turned round.
 void Follower::leave_spans_behind() noexcept {
   for (int n = 0; n < kSpansPerCycle; ++n) {
     const Span span = front();
-    const bool tapped = span.terms.feed.lock.kind == Lock::Kind::tap_in && master_.out();
+    const bool tapped = legs_behind_ < master_.leg();
     const bool passed =
         !span.stop && master_.state().s > run_begin_ + span.length && window_.span(1) != nullptr;
     if (!tapped && !passed) return;
     if (passed) run_begin_ += span.length;
+    if (tapped) ++legs_behind_;
     window_.pop();
     track_.pieces.free_below(span.first_piece + span.pieces);
     enter();
   }
 }
 
+/// The path has at most the speed that it settles at, until it rests.
+void Follower::begin_retract() noexcept {
+  const MotionState& at = master_.state();
+  Box leaving = master_.box();
+  leaving.velocity = at.v + 0.5 * at.a * std::max(0.0, at.a) / leaving.jerk;
+  Retract::Path path;
+  path.along = along_;
+  path.box = leaving;
+  path.at = sample_.position;
+  path.way = ramp_distance(at.v, at.a, 0.0, leaving) + at.v * config_.period_s;
+  retract_.begin(config_, front().terms.feed.lock, path);
+}
+
 /// Off the thread, beside what the path still moves until it rests; then the path is given up.
 void Follower::move_off_path() noexcept {
-  if (!off_path_ && master_.state().v != 0.0 && front().terms.feed.lock.kind == Lock::Kind::thread)
-    retract_.begin(config_, along_, master_.box());
+  if (!off_path_ && master_.state().v != 0.0 && !master_.taps()) begin_retract();
   off_path_ = true;
   leave_spans_behind();
   retract_.step(config_.period_s);
@@ -88,8 +102,7 @@ void Follower::place_master_on_axes() noexcept {
   const Piece& piece = track_.pieces[piece_];
   const double s = state.s - piece.start;
   // Only a tap may be beyond its depth.
-  const bool taps = front().terms.feed.lock.kind != Lock::Kind::thread;
-  place_on_axes(taps ? s : std::clamp(s, 0.0, piece.length), state);
+  place_on_axes(master_.taps() ? s : std::clamp(s, 0.0, piece.length), state);
   if (!off_path_) return;
   for (int i = 0; i < config_.axis_count; ++i) {
     const MotionState off = retract_.at(i);
@@ -103,15 +116,19 @@ void Follower::show_master() noexcept {
   ByMaster& shown = sample_.master;
   shown.underway = in_span_ && by_master_;
   if (!shown.underway) {
-    shown.waits = shown.leaving = shown.locked = shown.reverse = shown.halt = false;
+    shown.waits = shown.leaving = shown.locked = shown.taps = shown.bound = shown.halt = false;
+    shown.turn = 0;
     shown.fault = MasterFault::none;
     return;
   }
   shown.waits = master_.at_rest() && !master_.leaving();
   shown.leaving = master_.leaving();
   shown.locked = master_.locked();
-  shown.reverse = master_.wants_reverse();
+  shown.taps = master_.taps();
+  shown.bound = master_.bound();
   shown.halt = master_.wants_halt();
+  shown.turn = static_cast<std::int8_t>(master_.wants_turn());
+  shown.turn_rpm = master_.wants_rpm();
   shown.fault = master_.fault();
   shown.value = master_.value();
   shown.limit = master_.limit();

@@ -236,6 +236,10 @@ void check_control(const MachineConfig& machine, Reading& reading) {
     reading.error(machine.where("control.dialect"), finding::kUnknownDialect,
                   {machine.control.dialect, known});
   }
+  const auto latch = static_cast<std::size_t>(machine.control.probe_latch);
+  if (machine.control.probe_latch != ProbeLatch::edge && machine.control.probe.empty())
+    reading.error(machine.where("control.probe_latch"), finding::kProbeLatchAlone,
+                  {std::string(choices_of<ProbeLatch>()[latch])});
   check_buses(machine, reading);
   for (std::size_t i = 0; i < machine.stations.size(); ++i) StationCheck(machine, i, reading).all();
   check_simulation(machine, reading);

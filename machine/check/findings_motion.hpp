@@ -287,6 +287,10 @@ inline constexpr text::Entry kUnknownDialect{"machine.unknown_dialect", "dialect
                                              "язык «{0}» не входит в список: {1}"};
 inline constexpr text::Entry kKeyNotHere{"machine.key_not_here", "`{0}` has no meaning for a {1} station",
                                          "«{0}» не имеет смысла для станции вида {1}"};
+inline constexpr text::Entry kProbeLatchAlone{
+    "machine.probe_latch_alone",
+    "probe_latch = \"{0}\" needs `probe`: its input says that the probe is free before it measures",
+    "для probe_latch = \"{0}\" нужен `probe`: его вход сообщает, что щуп свободен перед измерением"};
 inline constexpr text::Entry kKeyNeeded{"machine.key_needed", "a {1} station needs `{0}`",
                                         "для станции вида {1} нужен `{0}`"};
 inline constexpr text::Entry kSwitchZone{"machine.switch_zone", "\"{0}\": from {1} is not below to {2}",

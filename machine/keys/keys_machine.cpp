@@ -11,6 +11,18 @@ std::span<const std::string_view> choices_of<ArcFeed>() {
 }
 
 template <>
+std::span<const std::string_view> choices_of<ThreadSide>() {
+  static constexpr std::string_view kNames[] = {"declared", "infeed"};
+  return kNames;
+}
+
+template <>
+std::span<const std::string_view> choices_of<ProbeLatch>() {
+  static constexpr std::string_view kNames[] = {"edge", "drive-1", "drive-2"};
+  return kNames;
+}
+
+template <>
 std::span<const std::string_view> choices_of<MachineKind>() {
   static constexpr std::string_view kNames[] = {"by_axes", "turning", "milling"};
   return kNames;
@@ -58,12 +70,35 @@ const Section& section_of<ControlConfig>() {
           "thread_hold_retracts", {},
           "a hold leaves a thread by `thread_retract` of the axes; otherwise the pass goes on to its end",
           "останов подачи прерывает резьбу с отводом осей по `thread_retract`; иначе проход завершается"),
+      key<&C::thread_retract_side>(
+          "thread_retract_side", {},
+          "to which side an axis leaves a thread: by the sign of its `thread_retract`, or to where its last "
+          "move "
+          "of at least that length came from, which suits outer and inner threads",
+          "в какую сторону ось отходит от резьбы: по знаку `thread_retract` или туда, откуда пришла "
+          "последним "
+          "перемещением не короче него, что годится для наружной и внутренней резьбы"),
+      key<&C::tap_overshoot>(
+          "tap_overshoot", {.unit = Unit::mm, .min = 0, .max = 100, .above_min = true},
+          "so far a tap may go beyond its depth with a spindle that turns round late; where it would rest "
+          "beyond it, it is stopped beside the spindle, alarm 4109",
+          "на столько метчик может пройти за глубину вслед за шпинделем, который реверсируется поздно; если "
+          "он "
+          "остановился бы дальше, ось останавливается отдельно от шпинделя, авария 4109"),
       key<&C::probe>(
           "probe", {.refers = Refers::digital_input},
           "input point of the probe, TRUE while it is deflected; with `edges` of the point a touch is "
           "known to the time of its edge, without it to a cycle",
           "вход щупа, TRUE, пока он отклонён; при `edges` точки касание известно с точностью "
           "времени фронта, без него — с точностью такта"),
+      key<&C::probe_latch>("probe_latch", {},
+                           "what tells where the probe touched: the edge of `probe`, or the touch probe of "
+                           "the axes' drives, to "
+                           "whose input 1 or 2 it is wired besides (60B8h); an axis that moves and has not "
+                           "latched is alarm 4116",
+                           "что сообщает положение касания: фронт `probe` или защёлка приводов осей, к входу "
+                           "1 или 2 которых щуп "
+                           "подключён дополнительно (60B8h); движущаяся ось без защёлки — авария 4116"),
       key<&C::tool_places>("tool_places", {.min = 0, .max = 9999},
                            "places of the magazine or turret, T takes 0 to this number; 0: any T",
                            "мест в магазине или револьверной головке, T — от 0 до этого числа; 0: любой T"),
@@ -281,6 +316,17 @@ const Section& section_of<SimulatedDrive>() {
                             "rigid stop, machine coordinates", "жёсткий упор, машинные координаты"),
       key<&C::end_stop_max>("end_stop_max", {.unit = Unit::axis_length, .min = -kLongest, .max = kLongest},
                             "rigid stop, machine coordinates", "жёсткий упор, машинные координаты"),
+      key<&C::dip_torque>("dip_torque", {.unit = Unit::newton_metre, .min = 0, .max = 1000},
+                          "load against the motion that comes and goes: a cut on a spindle",
+                          "нагрузка против движения, которая появляется и исчезает: резание на шпинделе"),
+      key<&C::dip_period>("dip_period", {.unit = Unit::second, .min = 0.01, .max = 3600},
+                          "from the begin of one such load to the next",
+                          "от начала одной такой нагрузки до следующей"),
+      key<&C::dip_time>("dip_time", {.unit = Unit::second, .min = 0, .max = 3600}, "so long each one lasts",
+                        "длительность каждой"),
+      key<&C::encoder_noise>("encoder_noise", {.unit = Unit::counts, .min = 0, .max = 1e6},
+                             "so far a reading of the encoder is off at most, either way",
+                             "наибольшая погрешность отсчёта датчика в обе стороны"),
   };
   static const Section section{"the plant behind a simulated drive", "механика за имитируемым приводом", keys,
                                &default_object<C>};

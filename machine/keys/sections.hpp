@@ -10,6 +10,10 @@ namespace servogate::machine {
 template <>
 std::span<const std::string_view> choices_of<ArcFeed>();
 template <>
+std::span<const std::string_view> choices_of<ThreadSide>();
+template <>
+std::span<const std::string_view> choices_of<ProbeLatch>();
+template <>
 std::span<const std::string_view> choices_of<AxisType>();
 template <>
 std::span<const std::string_view> choices_of<MachineKind>();

@@ -192,6 +192,9 @@ function chartSpecs() {
   for (const name of ["spindle", "spindle2"])
     if (RUN.recorded(name + ".cmd"))
       out.push({title: "spindle", unit: "rpm", curves: [{name: name + ".cmd", label: "→", colour: () => css("--axis-3")}, {name: name + ".act", label: "", colour: () => css("--axis-4")}]});
+  const off = RUN.recorded("thread.off") ? RUN.series.get("thread.off") : null;
+  if (off && (off.low.some(v => v < 0) || off.high.some(v => v > 0)))
+    out.push({title: "threadOff", unit: "µm", factor: 1000, curves: [{name: "thread.off", label: "", colour: () => css("--accent")}]});
   const drawn = out.filter(s => s.curves.length);
   if (drawn.length) drawn[drawn.length - 1].labels = true;
   return drawn;

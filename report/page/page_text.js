@@ -102,6 +102,7 @@ const TEXTS = {
   all: ["All", "Всё"],
   pathSpeed: ["Path speed", "Скорость по пути"],
   spindle: ["Spindle", "Шпиндель"],
+  threadOff: ["Thread: off the spindle's angle", "Резьба: отклонение от угла шпинделя"],
   signals: ["Signals", "Сигналы"],
   noSignals: ["No signals were chosen for this run.", "Для этого прогона сигналы не выбраны."],
   constant: ["Show signals that never change", "Показать неизменные сигналы"],

@@ -80,6 +80,7 @@ void RunRecorder::Impl::name_series() {
     run.series.push_back({name + ".cmd", "rpm", {}, {}});
     run.series.push_back({name + ".act", "rpm", {}, {}});
   }
+  if (layout.spindles > 0) run.series.push_back({"thread.off", "mm", {}, {}});
   values.resize(run.series.size());
 }
 
@@ -94,7 +95,7 @@ void RunRecorder::Impl::name_channels() {
   }
   run.channels.push_back({"path.speed", 1e-4, 2});
   for (std::size_t n = kPerAxis * run.axes.size() + 1; n < run.series.size(); ++n)
-    run.channels.push_back({run.series[n].name, 1e-2, 1});
+    run.channels.push_back({run.series[n].name, run.series[n].unit == "mm" ? 1e-6 : 1e-2, 1});
   every.emplace(run.channels, options.max_bytes);
   cycle_values.resize(run.channels.size());
 }
@@ -107,10 +108,11 @@ void RunRecorder::Impl::keep_cycle(const TraceRow& row) {
     cycle_values[n++] = axes[a].derived();
   }
   cycle_values[n++] = row.feed_mm_s;
-  for (std::size_t s = 0; n < cycle_values.size(); ++s) {
+  for (std::size_t s = 0; s < static_cast<std::size_t>(layout.spindles); ++s) {
     cycle_values[n++] = row.spindles[s].command_rpm;
     cycle_values[n++] = row.spindles[s].actual_rpm;
   }
+  if (layout.spindles > 0) cycle_values[n] = row.off_spindle_mm;
   every->add(row.cycle, cycle_values, row.alarms > alarms);
   alarms = row.alarms;
 }
@@ -142,10 +144,11 @@ void RunRecorder::Impl::measure(const TraceRow& row) {
   }
   std::size_t n = kPerAxis * axes.size();
   values[n++] = static_cast<float>(row.feed_mm_s);
-  for (std::size_t s = 0; n < values.size(); ++s) {
+  for (std::size_t s = 0; s < static_cast<std::size_t>(layout.spindles); ++s) {
     values[n++] = static_cast<float>(row.spindles[s].command_rpm);
     values[n++] = static_cast<float>(row.spindles[s].actual_rpm);
   }
+  if (layout.spindles > 0) values[n] = static_cast<float>(row.off_spindle_mm);
 }
 
 void RunRecorder::Impl::halve_all() {

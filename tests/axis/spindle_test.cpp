@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "firmware_if/image/interface_map.hpp"
@@ -131,6 +132,24 @@ TEST(Spindle, takes_the_override_of_the_plc_and_the_limits_of_its_configuration)
   EXPECT_EQ(rig.spindle.ordered_rpm(), 100.0);
 }
 
+TEST(Spindle, never_turns_faster_than_the_chuck_permits_and_slows_down_when_that_falls) {
+  SpindleRig rig;
+  rig.set("limit", 800.0);
+  rig.spindle.order(SpindleMode::cw, 1500.0);
+  rig.set("override", 125.0);
+  rig.run(1000);
+  EXPECT_NEAR(rig.image.spindles[0].command_rpm, 800.0, 1e-9);
+  EXPECT_TRUE(rig.spindle.at_speed());
+  rig.set("limit", 300.0);
+  rig.run(1000);
+  EXPECT_NEAR(rig.image.spindles[0].command_rpm, 300.0, 1e-9);
+  EXPECT_LE(rig.steepest, 3000.0 + 1e-6);
+  rig.set("limit", 0.0);
+  rig.set("override", 100.0);
+  rig.run(1000);
+  EXPECT_NEAR(rig.image.spindles[0].command_rpm, 1500.0, 1e-9);
+}
+
 TEST(Spindle, counts_whole_revolutions_from_its_zero_mark_with_the_time_that_they_are_of) {
   SpindleConfig c;
   c.encoder_delay = 0.003;
@@ -200,6 +219,64 @@ TEST(Spindle, stops_oriented_at_the_angle_from_standstill_and_out_of_motion) {
     EXPECT_TRUE(rig.events.empty());
     EXPECT_LE(rig.steepest, 3000.0 + 1e-6);
   }
+}
+
+TEST(Spindle, turns_on_by_angles_from_its_oriented_stop_at_the_speed_of_the_turn) {
+  SpindleConfig c;
+  c.orient_angle = 90.0;
+  SpindleRig rig(c);
+  rig.spindle.order(SpindleMode::orient, 0.0);
+  rig.run(5000);
+  ASSERT_TRUE(rig.spindle.oriented());
+  double wanted = 90.0;
+  const auto angle = [&] { return (rig.position - rig.mark) / 4096.0 * 360.0; };
+  wanted += 360.0 * std::round((angle() - wanted) / 360.0);
+  for (const auto& [degrees, rpm] :
+       {std::pair{720.0, 100.0}, {-90.0, 60.0}, {45.0, 200.0}, {-3600.0, 600.0}}) {
+    rig.spindle.turn(degrees, rpm);
+    EXPECT_FALSE(rig.spindle.settled());
+    wanted += degrees;
+    double fastest = 0.0;
+    for (int i = 0; i < 20'000 && !rig.spindle.settled(); ++i) {
+      rig.cycle();
+      fastest = std::max(fastest, std::abs(rig.last_command));
+    }
+    rig.run(500);
+    EXPECT_TRUE(rig.spindle.oriented()) << degrees;
+    EXPECT_NEAR(angle(), wanted, 0.6) << degrees;
+    EXPECT_LE(fastest, rpm + 1e-6) << degrees;
+  }
+  EXPECT_TRUE(rig.events.empty());
+  EXPECT_LE(rig.steepest, 3000.0 + 1e-6);
+}
+
+TEST(Spindle, whose_angle_is_not_known_does_not_turn_by_one) {
+  SpindleRig rig;
+  rig.run(10);
+  rig.spindle.turn(90.0, 100.0);
+  rig.run(1000);
+  EXPECT_EQ(rig.speed, 0.0);
+  EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
+  ASSERT_EQ(rig.events.size(), 1u);
+  EXPECT_EQ(rig.events[0].number, alarm::kSpindleOrientTimeout);
+}
+
+TEST(Spindle, that_turns_by_an_angle_stops_without_the_enable_and_reaches_its_angle_with_it) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::orient, 0.0);
+  rig.run(5000);
+  ASSERT_TRUE(rig.spindle.oriented());
+  const double from = rig.position;
+  rig.spindle.turn(1800.0, 100.0);
+  rig.run(1000);
+  rig.set("enable", false);
+  rig.run(1000);
+  EXPECT_TRUE(rig.spindle.zero_speed());
+  EXPECT_FALSE(rig.spindle.settled());
+  rig.set("enable", true);
+  rig.run(10'000);
+  EXPECT_TRUE(rig.spindle.settled());
+  EXPECT_NEAR((rig.position - from) / 4096.0, 5.0, 0.005);
 }
 
 TEST(Spindle, names_what_keeps_it_from_its_speed_or_angle) {

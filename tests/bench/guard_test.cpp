@@ -42,6 +42,42 @@ TEST(Guard, refuses_set_points_outside_of_the_envelope_before_the_drive_has_powe
   EXPECT_NE(refusal(Loop::velocity, senseless), Trip::none);
 }
 
+TEST(Guard, looks_at_where_speeds_and_torques_would_lead_before_the_drive_has_power) {
+  const std::vector<double> two_seconds(2000, 4.0), six_seconds(3000, 4.0), push(400, 0.05);
+  const auto trip_of = [](const std::function<bool(Guard&)>& accepts, double quick_stop = 0.0) {
+    Envelope envelope = kEnvelope;
+    envelope.quick_stop_rad_s2 = quick_stop;
+    Rig rig(envelope);
+    const bool accepted = accepts(rig.guard);
+    EXPECT_EQ(accepted, rig.guard.trip() == Trip::none);
+    return rig.guard.trip();
+  };
+  const auto speed = [&](Guard& g) { return g.accepts(Loop::velocity, two_seconds); };
+  EXPECT_EQ(trip_of(speed), Trip::none) << "8 rad of 10";
+  EXPECT_EQ(trip_of(speed, 10.0), Trip::none) << "and 0.8 rad to brake";
+  EXPECT_EQ(trip_of(speed, 3.0), Trip::travel) << "but 2.7 rad to brake";
+  EXPECT_EQ(trip_of([&](Guard& g) { return g.accepts(Loop::velocity, six_seconds); }), Trip::travel);
+  // 0.05 N m on 1e-3 kg m2: 50 rad/s2, in 0.4 s 20 rad/s and 4 rad.
+  const auto torque = [&](double inertia, double friction) {
+    return [&, inertia, friction](Guard& g) { return g.accepts_torque(push, {inertia, friction}); };
+  };
+  EXPECT_EQ(trip_of(torque(1.1e-3, 0.0)), Trip::none);
+  EXPECT_EQ(trip_of(torque(1.1e-3, 0.0), 20.0), Trip::travel) << "8.3 rad to brake";
+  EXPECT_EQ(trip_of(torque(5e-4, 0.0)), Trip::speed);
+  EXPECT_EQ(trip_of(torque(5e-4, 0.03)), Trip::none) << "friction takes more than half";
+  EXPECT_EQ(trip_of(torque(1e-6, 0.05)), Trip::none) << "it does not come loose";
+}
+
+TEST(Guard, begins_its_stop_so_early_that_the_travel_is_kept_behind_it) {
+  Envelope envelope = kEnvelope;
+  envelope.quick_stop_rad_s2 = 40.0;
+  Rig rig(envelope);
+  ASSERT_TRUE(rig.guard.enable(Loop::velocity));
+  EXPECT_FALSE(rig.guard.run_at(15.0, 100.0, 3.0));
+  EXPECT_EQ(rig.guard.trip(), Trip::travel);
+  EXPECT_NEAR(rig.guard.answer().position_rad, 10.0 - 15.0 * 15.0 / 80.0, 0.5);
+}
+
 TEST(Guard, a_run_that_needs_more_travel_does_not_begin) {
   Rig rig;
   EXPECT_TRUE(rig.guard.accepts_travel(-10.0, 10.0));

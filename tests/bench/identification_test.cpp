@@ -144,7 +144,11 @@ TEST(CoggingFit, finds_periods_amplitude_and_phase_beside_noise_and_an_uneven_sp
   Masses masses;
   masses.inertia_kg_m2 = inertia;
   const EvenRun run{angle, torque};
-  const auto fit = fit_cogging(std::span(&run, 1), &masses);
+  const auto rough = find_cogging(std::span(&run, 1));
+  ASSERT_TRUE(rough);
+  FrictionCurve friction;
+  friction.coulomb_nm = 0.1;
+  const auto fit = size_cogging(std::span(&run, 1), masses, friction, rough->periods);
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->periods, 36);
   EXPECT_NEAR(fit->amplitude_nm, 0.04, 0.04 * 0.06);
@@ -161,8 +165,8 @@ TEST(CoggingFit, claims_none_where_there_is_noise_alone_and_none_of_less_than_a_
   }
   const std::span<const double> a(angle), t(torque);
   const EvenRun whole{a, t}, part{a.first(1000), t.first(1000)};
-  EXPECT_FALSE(fit_cogging(std::span(&whole, 1), nullptr));
-  EXPECT_FALSE(fit_cogging(std::span(&part, 1), nullptr));
+  EXPECT_FALSE(find_cogging(std::span(&whole, 1)));
+  EXPECT_FALSE(find_cogging(std::span(&part, 1)));
 }
 
 TEST(LostMotionFit, parts_backlash_from_twist) {

@@ -106,6 +106,18 @@ TEST(Signal, a_chirp_begins_and_ends_at_its_frequencies) {
   EXPECT_NEAR(crossings(9000, 10'000), 86, 6);  // 36 ... 50 Hz
 }
 
+TEST(Signal, a_sine_begins_at_its_phase) {
+  Signal s;
+  s.kind = SignalKind::sine;
+  s.amplitude = 2.0;
+  s.from_hz = 10.0;
+  s.phase_rad = std::numbers::pi / 2.0;
+  const std::vector<double> values = samples(s, 1e-3);
+  ASSERT_GT(values.size(), 25u);
+  EXPECT_NEAR(values[0], 2.0, 1e-12);
+  EXPECT_NEAR(values[25], 0.0, 1e-9) << "a quarter of its period";
+}
+
 TEST(Signal, what_cannot_be_sampled_is_no_signal) {
   Signal s;
   s.kind = SignalKind::sine;

@@ -5,77 +5,15 @@
 #include <filesystem>
 #include <numbers>
 
-#include "tests/bench/random_plant.hpp"
-#include "tests/canopen_tools/workbench.hpp"
-#include "tests/property_seed.hpp"
+#include "tests/canopen_tools/lockstep_bench.hpp"
 
 namespace servogate::canopen_tools {
 namespace {
 
-constexpr const char* kEnvelope = " --travel -100..500 --speed 20 --torque 4.8 --time 120 --listen 0.1";
-
-/// A bus in granted time with one drive on it; what the bench says of it.
-class Lockstep : public Workbench {
+class Lockstep : public LockstepBench {
  protected:
-  /// One call of the bench on a drive of its own; $OUT is its directory.
-  Ended bench(const std::string& words, const std::string& plant = "friction=0.02") {
-    const std::string at = std::to_string(++calls_);
-    const std::string socket = path("lockstep-" + at);
-    const std::string url = "lockstep:unix:" + socket + "/can0";
-    auto bus = std::make_unique<usercan::Process>(
-        std::vector<std::string>{"can", "bus", "can0", "--listen", "unix:" + socket, "--lockstep", "2"});
-    EXPECT_TRUE(bus->says("can0"));
-    const usercan::Process drive({"drive", url, "--node", "5", "--plant", plant});
-    EXPECT_TRUE(drive.says("node 5"));
-    out_ = "run-" + at;
-    std::string line = "bench " + words + " --listen 0.1 --out " + out_;
-    line.replace(line.find("$DRIVE"), 6, url + " 5");
-    Ended ended = tool(line);
-    bus.reset();  // first: the drive waits for its time
-    return ended;
-  }
-  json meta() const { return json::parse(desk_.text(out_ + "/meta.json"), nullptr, false); }
-  std::string out_;
-  int calls_ = 0;
-
-  json identified(const mock::PlantConfig& plant, int number) {
-    const std::string at = std::to_string(number);
-    const std::string socket = path("lockstep" + at);
-    const std::string url = "lockstep:unix:" + socket + "/can0";
-    const usercan::Process bus({"can", "bus", "can0", "--listen", "unix:" + socket, "--lockstep", "2"});
-    EXPECT_TRUE(bus.says("can0"));
-    const usercan::Process drive({"drive", url, "--node", "5", "--plant", bench::plant_words(plant)});
-    EXPECT_TRUE(drive.says("node 5"));
-    return facts("bench identify " + url + " 5" + kEnvelope + " --out run" + at + " --i-may-move");
-  }
+  int seen_ = 0;  ///< calls so far
 };
-
-void expect_within(const json& found, double truth, const char* what) {
-  ASSERT_TRUE(found.is_number()) << what;
-  EXPECT_NEAR(found.get<double>(), truth, 0.03 * std::abs(truth)) << what;
-}
-
-TEST_F(Lockstep, random_plants_in_other_processes_are_identified_within_three_per_cent) {
-  std::mt19937_64 random(test::property_seed());
-  for (int i = 0; i < 2; ++i) {  // half a minute each; tests/bench has ten
-    const mock::PlantConfig p = bench::random_plant(random, i % 2 == 1);
-    SCOPED_TRACE(bench::plant_words(p));
-    const json found = identified(p, i);
-    ASSERT_EQ(found["trip"], "none");
-    EXPECT_EQ(found["off"], true);
-    expect_within(found["inertia_kg_m2"], p.inertia_kg_m2 + p.load_inertia_kg_m2, "inertia");
-    expect_within(found["friction"]["coulomb_nm"], p.coulomb_friction_nm, "Coulomb");
-    expect_within(found["friction"]["viscous_nm_s_rad"], p.viscous_friction_nm_s, "viscous");
-    ASSERT_EQ(found.contains("coupling"), p.stiffness_nm_rad > 0.0);
-    if (p.stiffness_nm_rad == 0.0) continue;
-    const double turn = 2.0 * std::numbers::pi;
-    expect_within(found["coupling"]["antiresonance_hz"],
-                  std::sqrt(p.stiffness_nm_rad / p.load_inertia_kg_m2) / turn, "antiresonance");
-    expect_within(found["coupling"]["resonance_hz"],
-                  std::sqrt(p.stiffness_nm_rad * (1.0 / p.load_inertia_kg_m2 + 1.0 / p.inertia_kg_m2)) / turn,
-                  "resonance");
-  }
-}
 
 constexpr const char* kSmall = " --travel -3..3 --speed 5 --torque 1 --i-may-move";
 
@@ -116,6 +54,60 @@ TEST_F(Lockstep, a_jog_that_would_leave_its_envelope_gets_no_power) {
   EXPECT_TRUE(ended.err_has("--speed")) << ended.err;
   const std::string samples = desk_.text(out_ + "/samples.csv");
   EXPECT_EQ(samples.find(",0x1637"), std::string::npos) << "Operation enabled";
+}
+
+TEST_F(Lockstep, a_torque_is_looked_at_by_the_least_inertia_before_the_drive_has_power) {
+  const std::string words = "run $DRIVE --signal step --loop torque --amplitude 0.1 --duration 0.2";
+  const Ended unknown = bench(words + kSmall);
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(unknown.err_has("--inertia")) << unknown.err;
+  const Ended far = bench(words + " --inertia 0.0001" + kSmall);  // 200 rad/s
+  EXPECT_EQ(far.code, 1);
+  EXPECT_TRUE(far.err_has("--speed")) << far.err;
+  EXPECT_EQ(desk_.text(out_ + "/samples.csv").find(",0x1637"), std::string::npos) << "Operation enabled";
+  const Ended good = bench(words + " --inertia 0.001" + kSmall, "friction=0.02,inertia=0.001");
+  EXPECT_EQ(good.code, 0) << good.err;
+}
+
+TEST_F(Lockstep, the_travel_is_kept_behind_the_quick_stop_of_the_drive) {
+  // 100 rev/s2 of the simulated drive: from 20 rev/s it needs 2 rev.
+  const std::string words = " --speed 25 --torque 5 --acceleration 80 --i-may-move --travel ";
+  const Ended ended = bench("jog $DRIVE 20 --mode csv" + words + "-1..8", "friction=0.02,inertia=0.0005");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NEAR(meta()["drive"]["quick_stop_rev_s2"], 100.0, 1e-6);
+  const Ended hard =
+      bench("run $DRIVE --signal step --loop velocity --amplitude 20 --duration 0.3" + words + "-1..7",
+            "friction=0.02,inertia=0.0005");
+  EXPECT_EQ(hard.code, 1) << "6 rev and 2 to brake";
+  EXPECT_TRUE(hard.err_has("--travel")) << hard.err;
+}
+
+TEST_F(Lockstep, what_a_run_that_was_cut_off_has_left_is_put_right_by_the_next_one) {
+  std::filesystem::create_directories(path("killed"));
+  const auto cut_off = [&](int during) {
+    // As a run leaves it: the simulated drive has 3000 in 6072h.
+    const json file{
+        {"schema", 1},
+        {"bus", "lockstep:unix:" + path("lockstep-" + std::to_string(++seen_)) + "/can0"},
+        {"node", 5},
+        {"product", 65938},
+        {"serial", 5},
+        {"objects",
+         {{{"index", 0x6072}, {"before", {0xC4, 0x09}}, {"during", {during & 255, during >> 8}}}}}};
+    desk_.write("killed/changed.json", file.dump());
+    return bench("move $DRIVE 0.5 --read 6072" + std::string(kSmall));
+  };
+  const Ended ended = cut_off(3000);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.err_has("6072h:00 of node 5 changed; it is 2500 again")) << ended.err;
+  EXPECT_EQ(meta()["objects"]["6072h:00"]["before"], 2500);
+  EXPECT_EQ(meta()["objects"]["6072h:00"]["after"], 417) << "read while the run has its own limit";
+  EXPECT_FALSE(desk_.has("killed/changed.json"));
+  EXPECT_FALSE(desk_.has(out_ + "/changed.json")) << "this run has left nothing";
+  const Ended since = cut_off(1000);
+  EXPECT_EQ(since.code, 0) << since.err;
+  EXPECT_FALSE(since.err_has("again")) << "somebody has written it since: " << since.err;
+  EXPECT_EQ(meta()["objects"]["6072h:00"]["before"], 3000);
 }
 
 TEST_F(Lockstep, objects_are_recorded_by_pdo_with_the_samples_of_a_run) {
@@ -181,6 +173,12 @@ TEST_F(Lockstep, a_run_passes_or_fails_by_its_limits) {
   const Ended wrong = bench(words + path("limits.toml") + kSmall);
   EXPECT_EQ(wrong.code, 2);
   EXPECT_TRUE(wrong.err_has("limits.toml:2")) << wrong.err;
+  desk_.write("limits.toml", "[limits]\n\"figures.time_s\" = {min = 2, max = 1}\n");
+  EXPECT_TRUE(tool("bench move nowhere 5 1 --out x --limits limits.toml" + std::string(kSmall))
+                  .err_has("limits.toml:2: figures.time_s: min is 2 and max 1"));
+  desk_.write("limits.toml", "[limits]\ntrip = {is = \"none\"}\n[limit]\ntrip = {is = \"none\"}\n");
+  EXPECT_TRUE(tool("bench move nowhere 5 1 --out x --limits limits.toml" + std::string(kSmall))
+                  .err_has("limits.toml:3: limit is no table"));
 }
 
 TEST_F(Lockstep, a_soft_drive_is_tuned_and_what_was_promised_is_measured_on_it) {
@@ -203,6 +201,55 @@ TEST_F(Lockstep, a_soft_drive_is_tuned_and_what_was_promised_is_measured_on_it) 
       << "120000";
   EXPECT_NE(desk_.text(out_ + "/report.html").find("expected"), std::string::npos);
   EXPECT_TRUE(ended.out_has("--restore " + out_ + "/before.dcf")) << ended.out;
+}
+
+TEST_F(Lockstep, two_axes_drive_a_circle_in_the_same_cycles) {
+  const std::string words =
+      "run $DRIVE --with 6 --phase 90 --signal sine --loop position --amplitude 0.5 --from 1 --duration 2";
+  const Ended ended =
+      bench(words + " --travel -1.2..1.2 --speed 5 --torque 2 --i-may-move", "friction=0.02", "5,6");
+  ASSERT_EQ(ended.code, 0) << ended.out << ended.err;
+  EXPECT_EQ(json::parse(desk_.text(out_ + "/node6/meta.json"), nullptr, false)["off"], true);
+  const json circle =
+      facts("bench circle " + out_ + "/path.csv --radius 0.5 --columns node5,node6")["figures"];
+  EXPECT_NEAR(circle["radius"], 0.5, 0.02);
+  EXPECT_LT(circle["G"], 0.05) << "both lag alike";
+  EXPECT_NEAR(circle["centre_x"], 0.0, 0.02) << "the first begins in its middle";
+  EXPECT_NEAR(circle["centre_y"], -0.5, 0.02) << "the second at its end";
+}
+
+TEST_F(Lockstep, of_several_drives_none_moves_where_one_does_not_fit_and_all_stop_where_one_does) {
+  const std::string words =
+      "run $DRIVE --with 6 --phase 90 --signal sine --loop position --amplitude 0.5 --from 1 ";
+  const Ended far =
+      bench(words + "--travel -0.7..0.7 --speed 5 --torque 2 --i-may-move", "friction=0.02", "5,6");
+  EXPECT_EQ(far.code, 1) << "the second goes to -1";
+  EXPECT_TRUE(far.err_has("node 6: ")) << far.err;
+  EXPECT_EQ(desk_.text(out_ + "/samples.csv").find(",0x1637"), std::string::npos) << "Operation enabled";
+  // 0.05 N m are not enough for the acceleration: one leaves its following error first.
+  const Ended weak =
+      bench(words + "--duration 3 --travel -2..2 --speed 5 --torque 0.05 --following 0.05 --i-may-move",
+            "friction=0.02,inertia=0.002", "5,6");
+  EXPECT_EQ(weak.code, 1) << weak.out;
+  EXPECT_TRUE(weak.err_has("--following")) << weak.err;
+  EXPECT_EQ(meta()["off"], true);
+  EXPECT_EQ(json::parse(desk_.text(out_ + "/node6/meta.json"), nullptr, false)["off"], true);
+  EXPECT_EQ(bench(words + "--with 5 --travel -2..2 --speed 5 --torque 1 --i-may-move").code, 2)
+      << "named twice";
+}
+
+TEST_F(Lockstep, a_relay_tunes_in_a_second_and_its_promise_is_kept) {
+  const Ended ended = bench("tune $DRIVE --relay 0.3 --apply --gains " +
+                                shell::source("examples/bench/simulated.gains.toml") +
+                                " --travel -1..20 --speed 6 --torque 4 --i-may-move",
+                            "friction=0.05,velocity-gain=0.12,inertia=0.001");
+  ASSERT_EQ(ended.code, 0) << ended.out << ended.err;
+  const json m = meta();
+  EXPECT_EQ(m["kept"], true);
+  EXPECT_NEAR(m["relay"]["inertia_kg_m2"], 0.001, 0.05 * 0.001);
+  EXPECT_GT(m["gains"]["written"]["velocity_gain"], 0.2);
+  EXPECT_LE(m["expected"]["loop"]["crossover_hz"], m["relay"]["hz"]) << "nothing is promised beyond it";
+  EXPECT_LT(m["after"]["step"]["itae"], m["before"]["step"]["itae"]);
 }
 
 TEST_F(Lockstep, a_proposal_without_apply_writes_nothing) {
@@ -266,6 +313,19 @@ TEST_F(Bench, gains_that_a_master_changed_are_restored_from_their_dcf) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(facts("sdo $BUS 5 read 60F9:1")["value"], 600'000);
   EXPECT_EQ(facts("sdo $BUS 5 read 60FB:1")["value"], 120'000);
+}
+
+TEST_F(Bench, a_drive_in_fault_gets_no_power_and_its_reset_is_the_command_that_is_named) {
+  drives("5", {"--fault", "over_current at=0.1"});
+  const std::string words =
+      "bench move $BUS 5 0.2 --listen 0.1 --travel -1..1 --speed 5 --torque 1 --i-may-move --out ";
+  const Ended ended = tool(words + "a");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(ended.err_has("h (603Fh): ")) << ended.err;
+  const std::string reset = "sdo " + bus() + " 5 write controlword 0x80 u16 --i-may-move";
+  EXPECT_TRUE(ended.err_has(reset)) << ended.err;
+  EXPECT_EQ(tool(reset).code, 0);
+  EXPECT_EQ(facts("sdo $BUS 5 read 6041")["value"].get<int>() & 8, 0) << "no fault any more";
 }
 
 TEST_F(Bench, what_does_not_fit_into_the_envelope_does_not_move) {

@@ -272,6 +272,22 @@ TEST_F(Workbench, od_restores_what_was_changed_and_compares_before_and_after) {
   EXPECT_TRUE(again["before"].empty());
 }
 
+TEST_F(Workbench, od_restores_the_file_of_a_device_into_its_successor) {
+  drives("5");
+  ASSERT_EQ(tool("od $BUS 5 --save a.dcf").code, 0);
+  std::string other = desk_.text("a.dcf");
+  const std::size_t at = other.find("ParameterValue=", other.find("[1018sub4]"));
+  ASSERT_NE(at, std::string::npos) << other.substr(0, 2000);
+  other.replace(at, other.find('\r', at) - at, "ParameterValue=0x00000007");
+  desk_.write("b.dcf", other);
+  ASSERT_EQ(tool("sdo $BUS 5 write 6083 1234").code, 0);
+  const Ended ended = tool("od $BUS 5 --restore b.dcf");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.err_has("serial number")) << ended.err;
+  EXPECT_FALSE(ended.out_has("1018h:04")) << "it is no parameter: " << ended.out;
+  EXPECT_NE(facts("sdo $BUS 5 read 6083")["value"], 1234);
+}
+
 TEST_F(Workbench, od_restores_nothing_of_another_device) {
   drives("5");
   ASSERT_EQ(tool("od $BUS 5 --save a.dcf").code, 0);

@@ -140,5 +140,62 @@ TEST(Forecast, goes_on_where_an_element_that_cannot_be_driven_would_have_ended) 
   }
 }
 
+/// What a program of commands is refused for, each with its motion from 0, 0, 0; empty: it can be driven.
+std::string refused(const Machine& m, const std::vector<decltype(program::Command::what)>& what) {
+  Forecast forecast(Forecast::Depth::drivable, m.path, m.axes, {});
+  for (const auto& each : what) {
+    program::Command command;
+    command.what = each;
+    if (const auto finding = forecast.take(command)) return std::string(finding->entry->id);
+  }
+  return {};
+}
+
+program::Thread tap_to(double z) {
+  program::Thread t;
+  t.to[2] = z;
+  t.lead = 1.25;
+  t.tap = true;
+  return t;
+}
+
+program::Spindle turning(program::SpindleMode mode) {
+  program::Spindle s;
+  s.mode = mode;
+  s.speed = 500.0;
+  return s;
+}
+
+TEST(Forecast, takes_taps_with_a_dwell_and_with_broken_chips_as_one_motion_each) {
+  const Machine m = machine(1000.0, 10000.0);
+  const program::Spindle in = turning(program::SpindleMode::cw), out = turning(program::SpindleMode::ccw);
+  EXPECT_EQ(refused(m, {in, tap_to(-20), out, tap_to(0), in, program::End{}}), "");
+  EXPECT_EQ(refused(m, {in, tap_to(-20), program::Dwell{0.5}, out, tap_to(0), in, program::End{}}), "");
+  EXPECT_EQ(refused(m, {in, tap_to(-8), out, tap_to(-7), in, tap_to(-15), out, tap_to(0), program::End{}}),
+            "");
+  EXPECT_EQ(refused(m, {in, tap_to(-8), tap_to(-15), out, tap_to(0), program::End{}}), "")
+      << "two ways in the same sense are one";
+}
+
+TEST(Forecast, refuses_a_tap_that_does_not_come_back_as_the_run_would) {
+  const Machine m = machine(1000.0, 10000.0);
+  const program::Spindle in = turning(program::SpindleMode::cw), out = turning(program::SpindleMode::ccw);
+  EXPECT_EQ(refused(m, {in, tap_to(-20), program::End{}}), "channel.tap-open");
+  EXPECT_EQ(refused(m, {in, tap_to(-20), out, program::End{}}), "channel.tap-open");
+  EXPECT_EQ(refused(m, {in, tap_to(-20), out, tap_to(-5), program::End{}}), "channel.tap-open");
+  EXPECT_EQ(refused(m, {in, tap_to(-20), out, tap_to(-25)}), "channel.tap-open") << "not back";
+  EXPECT_EQ(refused(m, {in, tap_to(-20), turning(program::SpindleMode::stop)}), "channel.tap-open");
+  EXPECT_EQ(refused(m, {in, tap_to(-20), program::Rapid{}}), "channel.tap-open");
+}
+
+TEST(Forecast, refuses_a_tap_without_room_beyond_its_depth_for_a_spindle_that_turns_round_late) {
+  Machine m = machine(1000.0, 10000.0);
+  m.path.threads.travel_min[2] = -22.0;
+  m.path.threads.tap_overshoot = 3.0;
+  const program::Spindle in = turning(program::SpindleMode::cw), out = turning(program::SpindleMode::ccw);
+  EXPECT_EQ(refused(m, {in, tap_to(-18.9), out, tap_to(0)}), "");
+  EXPECT_EQ(refused(m, {in, tap_to(-19.1), out, tap_to(0)}), "channel.tap-leaves-travel");
+}
+
 }  // namespace
 }  // namespace servogate::channel::test

@@ -159,9 +159,214 @@ TEST(TapProgram, goes_to_its_depth_with_the_spindle_and_back_and_the_spindle_tur
               rig.process->tap_overshoot());
   EXPECT_TRUE(reversed) << "on the way out";
   EXPECT_NEAR(deepest, -15.0, 0.75);
-  EXPECT_NEAR(std::max(0.0, -15.0 - deepest), rig.process->tap_overshoot(), 1e-6);
+  EXPECT_NEAR(-15.0 - deepest, rig.process->tap_overshoot(), 1e-6);
   EXPECT_NEAR(rig.x(0), 10.0, 1e-6);
   EXPECT_EQ(rig.violations(), "");
+}
+
+/// Text of the last message.
+std::string message(const Rig& rig) {
+  return rig.process->texts().message(rig.status().message).value_or("");
+}
+
+/// Watches how far Z parts from the true spindle of a tap, from its lock on until both stand.
+struct WatchedTap : Rig {
+  WatchedTap(std::string_view program, double lead_mm, std::string_view power_on = "G27",
+             std::string_view dialect = "nc110")
+      : Rig(program, power_on, 0.5, RigKind::mill, dialect) {
+    each = [this, lead_mm] {
+      z_ = {x(2), z_[0], z_[1]};
+      deepest = std::min(deepest, x(2));
+      if (status().by_spindle && ++behind == 100) at_lock_ = -z_[2] - lead_mm * drives.turns;
+      if (!status().by_spindle && !stays()) behind = 0;
+      // Out of the hole, whose program goes on, both are free.
+      if (!status().by_spindle && state() == ProcessState::running) behind = 0;
+      if (behind < 100 || !stays()) return;
+      parted = std::max(parted, std::abs(-z_[2] - lead_mm * drives.turns - at_lock_));
+    };
+  }
+  /// Either of them still moves.
+  bool stays() const { return moving() || std::abs(image().spindles[0].actual_rpm) > 1.0; }
+  bool rests(double patience_s = 20.0) {
+    return until([this] { return !stays() && state() != ProcessState::running; }, patience_s);
+  }
+  double deepest = 1e9, parted = 0.0;
+  int behind = 0;
+
+ private:
+  std::array<double, 3> z_{};
+  double at_lock_ = 0.0;
+};
+
+constexpr std::string_view kTap = "S500 M3\nG0 Z5\nG84 R2 Z-25 K1.5\nX10\nG80\nG0 X20\nM30\n";
+/// The ramp of the rig's spindle is 50 revolutions/s2.
+const double kTapBound = 2.0 * path::phase_bound({0.001, 0.002, 4096.0, 1.0, 50.0}, 1.5);
+
+TEST(TapProgram, stays_with_its_spindle_in_an_emergency_stop_until_both_stand) {
+  for (const double z : {-3.0, -12.0, -24.0})
+    for (const bool out : {false, true}) {
+      WatchedTap rig(kTap, 1.5);
+      rig.start();
+      ASSERT_TRUE(rig.until([&] {
+        const bool there = out ? rig.x(2) > z && rig.image().spindles[0].actual_rpm < -450.0 : rig.x(2) < z;
+        return rig.behind > 100 && there;
+      }));
+      const double then = rig.x(2);
+      rig.logic.estop_ok = false;
+      ASSERT_TRUE(rig.rests()) << rig.alarm_list();
+      EXPECT_EQ(rig.state(), ProcessState::stopped_by_alarm);
+      EXPECT_LE(rig.parted, kTapBound) << z << out;
+      EXPECT_GT(std::abs(rig.x(2) - then), 0.2) << "it goes along with the ramp";
+      EXPECT_FALSE(rig.image().axes[2].drive_command.power) << "and the power goes then";
+      EXPECT_EQ(rig.violations(), "");
+    }
+}
+
+TEST(TapProgram, stays_with_its_spindle_where_a_limit_switch_stops_the_axes) {
+  for (const std::size_t axis : {std::size_t{0}, std::size_t{2}}) {
+    WatchedTap rig(kTap, 1.5);
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -8.0; }));
+    rig.logic.limit_plus[axis] = true;
+    ASSERT_TRUE(rig.rests()) << rig.alarm_list();
+    EXPECT_EQ(rig.state(), ProcessState::stopped_by_alarm);
+    EXPECT_LE(rig.parted, kTapBound) << axis;
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
+TEST(TapProgram, stays_with_its_spindle_where_the_drives_are_switched_off_or_the_program_is_stopped) {
+  for (const bool power : {true, false}) {
+    WatchedTap rig(kTap, 1.5);
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -8.0; }));
+    EXPECT_EQ(power ? rig.ask(RequestKind::power, 0.0) : rig.ask(RequestKind::stop), cycle::Refusal::none);
+    ASSERT_TRUE(rig.rests()) << rig.alarm_list();
+    EXPECT_LE(rig.parted, kTapBound) << power;
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
+TEST(TapProgram, whose_spindle_coasts_goes_no_deeper_than_it_is_allowed_to) {
+  WatchedTap rig(kTap, 1.5);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -8.0; }));
+  rig.drives.spindle_coasts = true;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kTapTooDeep), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.alarm(alarm::kTapTooDeep)->line, 4);
+  EXPECT_GE(rig.deepest, -25.0 - 3.0 - 1e-6);
+  rig.run(1.0);
+  EXPECT_EQ(rig.image().spindles[0].command_rpm, 0.0) << "the spindle is told to stop";
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(TapProgram, whose_spindle_coasts_in_an_emergency_stop_is_bounded_too_and_says_so) {
+  WatchedTap rig(kTap, 1.5);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -20.0; }));
+  rig.drives.spindle_coasts = true;
+  rig.logic.estop_ok = false;
+  ASSERT_TRUE(rig.until([&] { return !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kTapTooDeep), 1) << rig.alarm_list();
+  EXPECT_GE(rig.deepest, -25.0 - 3.0 - 1e-6);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(TapProgram, whose_spindle_does_not_turn_round_ends_with_an_alarm) {
+  WatchedTap rig(kTap, 1.5);
+  rig.drives.spindle_one_way = true;
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kTapNoTurn), 1) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(2), -25.0, 0.75);
+}
+
+TEST(TapProgram, that_is_held_leaves_its_hole_first_and_shows_that_it_will_be_held) {
+  for (const bool door : {true, false}) {
+    WatchedTap rig(kTap, 1.5);
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -8.0; }));
+    EXPECT_FALSE(rig.status().holds_later);
+    if (door) {
+      rig.logic.feed_enable = false;
+    } else {
+      EXPECT_EQ(rig.ask(RequestKind::hold), cycle::Refusal::none);
+    }
+    rig.run(0.01);
+    EXPECT_TRUE(rig.status().holds_later);
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held && !rig.moving(); }))
+        << rig.alarm_list();
+    EXPECT_FALSE(rig.status().holds_later);
+    EXPECT_NEAR(rig.x(2), 2.0, 1e-6);
+    EXPECT_NEAR(rig.deepest, -25.0, 0.75) << "the thread is whole";
+    rig.logic.feed_enable = true;
+    if (!door) {
+      EXPECT_EQ(rig.ask(RequestKind::resume), cycle::Refusal::none);
+    }
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  }
+}
+
+TEST(TapProgram, dwells_at_its_depth_with_a_standing_spindle) {
+  WatchedTap rig("S500 M3\nG95\nG0 Z5.\nG84 Z-15. R2. P400 F1.5\nG80\nM30\n", 1.5, "G291", "sinumerik-808d");
+  int stands = 0;
+  const auto watch = rig.each;
+  rig.each = [&] {
+    watch();
+    stands += rig.x(2) < -13.0 && std::abs(rig.image().spindles[0].actual_rpm) < 3.0;
+  };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_GE(stands, 370) << "cycles: 400 from the stop command on, in which the last turn ends, too";
+  EXPECT_LE(stands, 600);
+  EXPECT_NEAR(rig.deepest, -15.0, 0.75);
+  EXPECT_LE(rig.parted, kTapBound);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(TapProgram, too_close_to_the_end_of_the_travel_is_refused_before_it_moves) {
+  Rig rig("S500 M3\nG0 Z-280\nG84 R-282 Z-298 K1.5\nX10\nG80\nM30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; })) << rig.alarm_list();
+  EXPECT_EQ(rig.alarms(cycle::alarm::kProgramError), 1) << rig.alarm_list();
+  EXPECT_GE(rig.x(2), -283.0);
+}
+
+TEST(ThreadProgram, whose_spindle_is_not_told_to_turn_is_an_alarm_and_moves_nothing) {
+  Rig rig("S600 M3\nM5\nG33 Z-60 K1.5\nM30\n");
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }, 5.0));
+  EXPECT_EQ(rig.alarms(alarm::kThreadSpindleStands), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.x(2), 0.0);
+}
+
+TEST(ThreadProgram, whose_spindle_is_not_enabled_waits_and_then_ends_with_an_alarm) {
+  Rig rig("S600 M3\nG33 Z-60 K1.5\nM30\n");
+  rig.logic.spindle_enable = false;
+  rig.start();
+  ASSERT_FALSE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }, 9.0));
+  EXPECT_EQ(rig.status().wait.reason, image::WaitReason::spindle_stands);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }, 5.0));
+  EXPECT_EQ(rig.alarms(alarm::kThreadSpindleStands), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.x(2), 0.0);
+}
+
+TEST(ThreadProgram, is_left_to_where_its_tool_came_from) {
+  struct Case {
+    const char* infeed;
+    double thread_x, left_x;
+  };
+  for (const Case& c : {Case{"G0 X10\nG0 X5\nG0 X5.5\n", 5.5, 7.5},
+                        Case{"G0 X-10\nG0 X5\nG0 X4.5\n", 4.5, 2.5}, Case{"G0 X0.5\n", 0.5, 0.5}}) {
+    Rig rig(std::string("S600 M3\n") + c.infeed + "G33 Z-60 K1.5\nM30\n", "G27", 0.5, RigKind::infeed);
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; })) << rig.alarm_list();
+    EXPECT_NEAR(rig.x(0), c.thread_x, 1e-6);
+    rig.drives.spindle_silent = true;
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+    EXPECT_NEAR(rig.x(0), c.left_x, 1e-6) << c.infeed;
+    EXPECT_EQ(rig.violations(), "");
+  }
 }
 
 TEST(SpindleMark, lets_the_motion_begin_when_the_spindle_passes_its_zero_mark) {
@@ -172,11 +377,6 @@ TEST(SpindleMark, lets_the_motion_begin_when_the_spindle_passes_its_zero_mark) {
   };
   ASSERT_TRUE(rig.finish()) << rig.alarm_list();
   EXPECT_LT(std::min(began, 1.0 - began), 0.01);
-}
-
-/// Text of the last message.
-std::string message(const Rig& rig) {
-  return rig.process->texts().message(rig.status().message).value_or("");
 }
 
 constexpr std::string_view kTouch = "(DPT,10,12,600)\nG72 Z-50 E30\n(DIS,E30)\nG0 X7\nM30\n";
@@ -251,6 +451,80 @@ TEST(ProbeProgram, does_not_move_with_a_probe_that_is_deflected_before) {
   ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm; }));
   EXPECT_EQ(rig.alarms(alarm::kProbeStuck), 1) << rig.alarm_list();
   EXPECT_EQ(rig.x(2), 0.0);
+}
+
+TEST(ProbeProgram, whose_contacts_bounce_counts_the_first_edge_and_is_no_touch_in_the_rapid_back) {
+  for (const bool edges : {true, false}) {
+    Rig rig(kTouch);
+    rig.drives.surface_at(-49.3217);
+    rig.drives.edges = edges;
+    rig.drives.bounce_cycles = 12;
+    ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+    const double said = std::strtod(message(rig).substr(message(rig).find('=') + 1).c_str(), nullptr);
+    EXPECT_NEAR(said, -49.3217, edges ? 0.001 : 0.010 + 1e-6) << edges;
+    EXPECT_EQ(rig.alarm_list(), "");
+  }
+}
+
+TEST(ProbeProgram, that_touches_at_the_end_of_its_way_has_touched) {
+  // From a hundredth before the end on, where the set-point has arrived before the axis.
+  for (const double surface : {-61.9, -61.99, -61.999, -61.9999}) {
+    Rig rig(kTouch);
+    rig.drives.surface_at(surface);
+    ASSERT_TRUE(rig.finish()) << surface << " " << rig.alarm_list();
+    const double said = std::strtod(message(rig).substr(message(rig).find('=') + 1).c_str(), nullptr);
+    EXPECT_NEAR(said, surface, 0.001);
+    EXPECT_NEAR(rig.x(0), 7.0, 1e-6) << "the program goes on";
+  }
+}
+
+TEST(ProbeProgram, whose_touch_is_told_in_the_cycle_of_its_end_or_just_behind_has_touched) {
+  for (int late = 0; late < 8; ++late) {
+    Rig rig(kTouch);
+    rig.drives.surface_at(-200.0);
+    rig.drives.edges = false;
+    int rests = -1;
+    rig.each = [&] {
+      if (rests < 0 && std::abs(rig.x(2) + 62.0) < 1e-9 && rig.image().axes[2].in_position) rests = 0;
+      if (rests >= 0 && rests++ == late) rig.drives.surface_at(-61.9999);
+    };
+    ASSERT_TRUE(rig.finish()) << late << " " << rig.alarm_list();
+    EXPECT_NEAR(rig.x(0), 7.0, 1e-6);
+  }
+}
+
+TEST(ProbeProgram, knows_where_its_drives_have_latched_the_touch) {
+  Rig rig("(DPT,10,12,600)\nG72 X40 Z-30 E30\n(DIS,E30,E31)\nM30\n", "G27", 0.5, RigKind::latching);
+  rig.drives.edges = false;
+  rig.drives.clearance = [](const std::array<double, kAxes>& at) { return at[2] + 30.4321; };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  double x = 0.0, z = 0.0;
+  ASSERT_EQ(std::sscanf(message(rig).c_str(), "E30=%lf E31=%lf", &x, &z), 2) << message(rig);
+  EXPECT_NEAR(z, -30.4321, 1e-4) << "to the count, from an input that is known to a cycle";
+  EXPECT_NEAR(x, 40.0 * 30.4321 / 30.0, 1e-4);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ProbeProgram, whose_moving_axis_has_no_latch_ends_with_an_alarm_that_names_it) {
+  Rig rig("(DPT,10,12,600)\nG72 X40 Z-30 E30\nM30\n", "G27", 0.5, RigKind::latching);
+  rig.drives.clearance = [](const std::array<double, kAxes>& at) { return at[2] + 30.4321; };
+  rig.drives.latches[0] = false;
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kProbeNotLatched), 1) << rig.alarm_list();
+  EXPECT_EQ(rig.alarm(alarm::kProbeNotLatched)->axis, 0);
+}
+
+TEST(ProbeProgram, whose_probe_stays_deflected_behind_the_touch_stops_with_an_alarm) {
+  Rig rig(kTouch);
+  rig.drives.surface_at(-49.0);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.image().packets.bit(kProbePlace); }));
+  rig.drives.clearance = [](const std::array<double, kAxes>&) { return -1.0; };
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kProbeNotFree), 1) << rig.alarm_list();
+  EXPECT_LT(rig.x(2), -10.0) << "on its way back";
+  EXPECT_EQ(rig.violations(), "");
 }
 
 TEST(ProbeProgram, that_touches_in_a_rapid_stops_with_an_alarm) {

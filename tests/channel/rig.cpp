@@ -54,7 +54,8 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
   image::DriveFeedback& s = image.spindles[0].drive;
   s.online = true;
   s.state = spindle_.power ? image::DriveState::operation_enabled : image::DriveState::switch_on_disabled;
-  s.velocity_counts_s = spindle_.power ? spindle_.velocity_counts_s : 0.0;
+  const double told = spindle_.power ? spindle_.velocity_counts_s : 0.0;
+  if (!spindle_coasts) s.velocity_counts_s = spindle_one_way ? std::max(0.0, told) : told;
   s.missed = spindle_silent ? s.missed + 1 : 0;
   const double period = image.now.period_s(), was = turns;
   slipped_ += std::clamp(slip - slipped_, -0.002, 0.002);  // 10 % in 50 ms: it has inertia
@@ -65,11 +66,31 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
   }
   if (!spindle_silent) s.position_counts = static_cast<std::int64_t>(std::floor(turns * 4096.0));
 
-  if (!clearance) return;
+  if (clearance) probe(image);
+}
+
+void IdealDrives::probe(image::ProcessImage& image) {
   std::array<double, kAxes> at{};
   for (std::size_t i = 0; i < kAxes; ++i) at[i] = static_cast<double>(counts_[i]) / 100000.0;
   const double clear = clearance(at), before = std::exchange(clear_before_, clear);
-  image.packets.set_bit(kProbePlace, clear <= 0.0);
+  since_edge_ = (clear <= 0.0) != (before <= 0.0) ? 0 : since_edge_ + 1;
+  const bool bounces = since_edge_ > 0 && since_edge_ <= bounce_cycles && since_edge_ / 2 % 2 != 0;
+  const bool level = (clear <= 0.0) != bounces, was = image.packets.bit(kProbePlace);
+  image.packets.set_bit(kProbePlace, level);
+  if (edges && since_edge_ > 0 && level != was) image.edges.add({kProbePlace, level, image.now.t_ns});
+  const double share = before / (before - clear);
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    const image::DriveCommand& told = commands_[i];
+    image::DriveFeedback& f = image.axes[i].drive;
+    const bool armed = told.latch_arm && told.latch_source == image::LatchSource::probe_1;
+    if (!armed) latched_[i] = false;
+    if (!armed || latched_[i] || !latches[i] || clear > 0.0 || before <= 0.0) continue;
+    latched_[i] = true;
+    ++f.latch_sequence;
+    f.latch_counts =
+        counts_before_[i] + std::llround(share * static_cast<double>(counts_[i] - counts_before_[i]));
+  }
+  counts_before_ = counts_;
   if (!edges || clear > 0.0 || before <= 0.0) return;
   const auto ago = static_cast<image::Nanoseconds>((2.0 - before / (before - clear)) *
                                                    static_cast<double>(image.now.period_ns));
@@ -136,12 +157,16 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
   if (during) during();
 }
 
-Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s, RigKind kind) {
+Rig::Rig(std::string_view program, std::string_view power_on, double handshake_timeout_s, RigKind kind,
+         std::string_view dialect)
+    : dialect_(dialect) {
   ProcessConfig config;
   config.path.axis_count = kAxes;
   if (kind != RigKind::blind) config.probe = axis::SwitchPlace{kProbePlace, false};
+  if (kind == RigKind::latching) config.probe_latch = image::LatchSource::probe_1;
   config.path.threads.hold_retracts = kind == RigKind::retracting;
   config.path.threads.retract = {2.0, 0.0, 0.0};
+  config.path.threads.by_infeed = kind == RigKind::infeed;
   if (kind == RigKind::lawless) config.path.reserve = -1.0;
   config.handshake_timeout_s = handshake_timeout_s;
   cycle::CycleParts parts;
@@ -162,6 +187,8 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     m.letter = letters[a];
     m.travel_min = -300;
     m.travel_max = 300;
+    config.path.threads.travel_min[static_cast<std::size_t>(a)] = -300;
+    config.path.threads.travel_max[static_cast<std::size_t>(a)] = 300;
     m.rapid = kLimits.velocity;
     m.diameter = kind == RigKind::lathe && a == 0;
     m.rotary = c.rotary = config.path.rotary[static_cast<std::size_t>(a)] = kind == RigKind::rotary && a == 1;
@@ -170,6 +197,17 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   }
   model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
   model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
+  if (dialect != "nc110") {
+    model_.power_on = {std::string(power_on)};
+    model_.variables.clear();
+  }
+  if (kind == RigKind::iso || kind == RigKind::fenix) {
+    dialect_ = kind == RigKind::iso ? "sinumerik-808d" : "fenix";
+    model_.power_on =
+        kind == RigKind::iso ? std::vector<std::string>{"G291"} : std::vector<std::string>{"G94", "G90"};
+    model_.kind = program::MachineModel::Kind::milling;
+    model_.variables.clear();
+  }
   process = std::make_unique<Process>(config);
   process->load(factory(program));
   parts.devices = {&drives};
@@ -188,8 +226,8 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
 }
 
 InterpreterFactory Rig::factory(std::string_view program) const {
-  return [model = model_, text = std::string(program)](const program::Position& at) {
-    return program::Interpreter("nc110", model, {}, "test.nc", text, {}, at);
+  return [model = model_, text = std::string(program), dialect = dialect_](const program::Position& at) {
+    return program::Interpreter(dialect, model, {}, "test.nc", text, {}, at);
   };
 }
 

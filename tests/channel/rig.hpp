@@ -27,21 +27,28 @@ class IdealDrives final : public image::CycleDevice {
   void send(image::ProcessImage& image) noexcept override;
   std::array<bool, kAxes> fault{};  ///< falls out of Operation enabled
   std::array<bool, kAxes> stuck{};  ///< does not move any more, and says so
-  double slip = 0.0;            ///< share of its speed that the spindle loses under load, 0.2 % each cycle
-  bool spindle_silent = false;  ///< its readings do not come any more
-  double turns = 0.0;           ///< true revolutions of the spindle one period ago
+  double slip = 0.0;             ///< share of its speed that the spindle loses under load, 0.2 % each cycle
+  bool spindle_silent = false;   ///< its readings do not come any more
+  bool spindle_coasts = false;   ///< it turns on as it does, whatever it is told
+  bool spindle_one_way = false;  ///< it stops, but does not turn counter-clockwise
+  double turns = 0.0;            ///< true revolutions of the spindle one period ago
   /// Of the probe to the part, mm: it is deflected from 0 down. Without it there is no part.
   std::function<double(const std::array<double, kAxes>&)> clearance;
   void surface_at(double z) {
     clearance = [z](const std::array<double, kAxes>& at) { return at[2] - z; };
   }
-  bool edges = true;  ///< its input tells its edges with times
+  bool edges = true;                                  ///< its input tells its edges with times
+  std::array<bool, kAxes> latches{true, true, true};  ///< drives whose input 1 it is wired to, too
+  int bounce_cycles = 0;  ///< so long its contacts close and open every second cycle behind an edge
 
  private:
   std::array<std::array<std::int64_t, 2>, kAxes> pipe_{};
   std::array<image::DriveCommand, kAxes> commands_{};
-  std::array<std::int64_t, kAxes> counts_{};
-  double clear_before_ = 0.0, slipped_ = 0.0;
+  std::array<bool, kAxes> latched_{};
+  std::array<std::int64_t, kAxes> counts_{}, counts_before_{};
+  void probe(image::ProcessImage& image);
+  double clear_before_ = 1.0, slipped_ = 0.0;
+  int since_edge_ = 1000000;
   image::DriveCommand spindle_;
 };
 
@@ -83,14 +90,16 @@ class TestLogic final : public image::Logic {
 /// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B; or
 /// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
 /// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
-enum class RigKind { mill, lathe, rotary, lawless, blind, retracting };
+/// Or one whose tool leaves a thread to where it came from. Or one whose drives latch the touch. Or one whose
+/// programs speak the ISO dialect, or Fenix.
+enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed, latching, iso, fenix };
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.
 class Rig {
  public:
   explicit Rig(std::string_view program, std::string_view power_on = "G27", double handshake_timeout_s = 0.5,
-               RigKind kind = RigKind::mill);
+               RigKind kind = RigKind::mill, std::string_view dialect = "nc110");
 
   /// Loads another program, as between two runs.
   void load(std::string_view program);
@@ -128,6 +137,7 @@ class Rig {
   void step();
   std::string violations_;
   InterpreterFactory factory(std::string_view program) const;
+  std::string dialect_;
   program::MachineModel model_;
   std::vector<image::AlarmRecord> history_;
   std::uint64_t next_id_ = 1;

@@ -1,87 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads and taps: the path goes with the measured angle of the spindle.
+// Threads: the path goes with the measured angle of the spindle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "tests/path/rig/trip.hpp"
-#include "tests/path/rig/turning_spindle.hpp"
+#include "tests/path/rig/lathe.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::path::test {
 namespace {
-
-Config lathe() {
-  Config c = mill();
-  c.threads.retract = {2.0, 0.0, 0.0};
-  return c;
-}
-
-Element thread_to(double x, double z, double lead, double rpm = 600.0, double start = 0.0) {
-  Element e = line_to(x, 0.0, z, 0.0, 0.02);
-  e.transition.continuation = Continuation::continuous;
-  e.lock = {Lock::Kind::thread, lead, 0.0, start};
-  e.revolutions = rpm / 60.0;
-  e.feed = lead * e.revolutions;
-  return e;
-}
-
-/// Planner, follower and a spindle in one loop.
-struct Lathe {
-  explicit Lathe(const Config& c = lathe()) : config(c), track(c), planner(c, track), follower(c, track) {
-    planner.restart({});
-    trip.samples.emplace_back();
-  }
-  void add(const Element& e) { ASSERT_TRUE(planner.add(e)); }
-  const Sample& step() {
-    planner.work();
-    follower.set_spindle(spindle.wanted);
-    follower.set_master(spindle.reading());
-    trip.samples.push_back(follower.step(track.visible()));
-    spindle.step();
-    const Sample& s = trip.samples.back();
-    if (s.master.locked && lead != 0.0) {
-      // Where the true angle of this moment says Z is, but for whole revolutions.
-      const double turns = std::abs(s.position[2] - from) / lead, angle = sign * spindle.n - start;
-      const double off = turns - angle;
-      worst_mm = std::max(worst_mm, std::abs(off - std::round(off)) * lead);
-      ++locked;
-    }
-    return s;
-  }
-  bool until(const std::function<bool(const Sample&)>& met, int cycles = 200000) {
-    for (; cycles > 0; --cycles)
-      if (met(step())) return true;
-    return false;
-  }
-  bool finish() {
-    planner.finish();
-    return until([](const Sample& s) { return s.state == FollowerState::idle; });
-  }
-  /// Until the thread is locked and has gone some way.
-  void into_thread(double z = -20.0) {
-    planner.finish();
-    ASSERT_TRUE(until([&](const Sample& s) { return s.master.locked && s.position[2] < z; }));
-  }
-  std::string why() const {
-    for (const Sample& s : trip.samples)
-      if (s.master.fault != MasterFault::none)
-        return "fault " + std::to_string(static_cast<int>(s.master.fault)) + " " +
-               std::to_string(s.master.value) + ", limit " + std::to_string(s.master.limit);
-    return "no fault";
-  }
-  double limits() const { return worst(trip, config).most(); }
-  Config config;
-  Track track;
-  Planner planner;
-  Follower follower;
-  TurningSpindle spindle;
-  Trip trip;
-  double lead = 0.0, from = 0.0, start = 0.0, sign = 1.0, worst_mm = 0.0;
-  int locked = 0;
-};
 
 TEST(Thread, of_1_5_mm_at_600_rpm_and_4096_counts_is_within_10_um_of_the_true_angle) {
   Lathe m;
@@ -360,37 +289,6 @@ TEST(Thread, whose_master_is_lost_while_it_runs_in_is_left_and_while_it_brakes_e
   }
 }
 
-TEST(Tap, whose_master_is_lost_slows_down_on_its_line_in_each_phase) {
-  for (const double z : {-0.05, -10.0, -19.5}) {
-    for (const bool out : {false, true}) {
-      Lathe m;
-      Element in = thread_to(0, -20.0, 1.25);
-      in.lock.kind = Lock::Kind::tap_in;
-      in.transition.continuation = Continuation::exact_stop;
-      Element back = in;
-      back.to = {};
-      back.lock.kind = Lock::Kind::tap_out;
-      m.add(in);
-      m.add(back);
-      m.planner.finish();
-      bool turned = false;
-      ASSERT_TRUE(m.until([&](const Sample& s) {
-        if (s.master.reverse) m.spindle.wanted = -10.0;
-        turned = turned || m.spindle.w < -5.0;
-        return out ? turned && s.position[2] > z : s.position[2] < z;
-      })) << z
-          << out;
-      m.spindle.readable = false;
-      ASSERT_TRUE(m.until([](const Sample& s) {
-        return s.state == FollowerState::stopped || s.state == FollowerState::idle;
-      })) << z
-          << out;
-      EXPECT_EQ(m.trip.samples.back().position[0], 0.0) << "a tap is not pulled aside";
-      EXPECT_LE(m.limits(), 1.001) << z << out;
-    }
-  }
-}
-
 TEST(Thread, that_is_stopped_is_left_by_the_declared_way_and_goes_on_from_there) {
   Lathe m;
   m.add(thread_to(0, -60, 1.5));
@@ -420,6 +318,77 @@ TEST(Thread, does_not_begin_where_the_axes_are_too_slow_for_it_or_its_way_too_sh
   }
 }
 
+TEST(Thread, whose_spindle_is_not_told_to_turn_does_not_begin_and_says_so) {
+  Lathe m;
+  m.spindle.wanted = m.spindle.w = 0.0;
+  m.spindle.ordered = 0.0;
+  m.add(thread_to(0, -60, 1.5));
+  m.planner.finish();
+  ASSERT_TRUE(m.until([](const Sample& s) { return s.master.fault != MasterFault::none; }, 50));
+  EXPECT_EQ(m.trip.samples.back().master.fault, MasterFault::stands);
+  ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; }, 50));
+  EXPECT_EQ(m.trip.samples.back().position, Vector{});
+}
+
+TEST(Thread, whose_spindle_does_not_come_to_its_speed_waits_for_its_ramp_and_no_longer_than_its_patience) {
+  Lathe m;
+  m.spindle.wanted = m.spindle.w = 0.0;
+  m.add(thread_to(0, -60, 1.5));
+  m.planner.finish();
+  const auto fault = [](const Sample& s) { return s.master.fault != MasterFault::none; };
+  ASSERT_FALSE(m.until(fault, 10000)) << "ten seconds";
+  ASSERT_TRUE(m.until(fault, 2000));
+  EXPECT_EQ(m.trip.samples.back().master.fault, MasterFault::stands);
+  EXPECT_GT(m.trip.samples.back().master.value, m.trip.samples.back().master.limit);
+}
+
+TEST(Thread, chain_that_grows_faster_is_left_inside_of_the_limits_of_the_axis_that_goes_off) {
+  // The second lead is four times the first one, on a taper: X has little left of its speed there.
+  Config config = lathe();
+  config.threads.window = 1e9;
+  config.threads.retract = {30.0, 0.0, 0.0};
+  Lathe m(config);
+  m.spindle.wanted = m.spindle.w = 50.0;
+  Element slow = thread_to(30, -30, 1.5, 3000.0), fast = thread_to(150, -150, 6.0, 3000.0);
+  slow.lock.per_turn = 1.5 * std::sqrt(2.0);
+  fast.lock.per_turn = 6.0 * std::sqrt(2.0);
+  m.add(slow);
+  m.add(fast);
+  m.planner.finish();
+  ASSERT_TRUE(m.until([](const Sample& s) { return s.master.locked && s.position[2] < -70.0; })) << m.why();
+  m.follower.stop();
+  ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; }));
+  EXPECT_LE(m.limits(), 1.001);
+}
+
+TEST(Thread, is_left_to_the_end_of_the_travel_and_no_further) {
+  for (const double sign : {1.0, -1.0}) {
+    Config config = lathe();
+    config.threads.retract = {2.0 * sign, 0.0, 0.0};
+    config.threads.travel_max[0] = config.threads.travel_min[0] = 1.2 * sign;
+    Lathe m(config);
+    m.add(thread_to(0, -60, 1.5));
+    m.into_thread();
+    m.follower.stop();
+    ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; }));
+    EXPECT_NEAR(m.trip.samples.back().position[0], 1.2 * sign, 1e-9);
+  }
+}
+
+TEST(Thread, is_left_to_the_other_side_or_not_at_all_where_its_elements_say_so) {
+  for (const bool stays : {true, false}) {
+    Lathe m;
+    Element e = thread_to(0, -60, 1.5);
+    (stays ? e.lock.stays : e.lock.against) = 1;
+    m.add(e);
+    m.into_thread();
+    m.follower.stop();
+    ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; }));
+    EXPECT_NEAR(m.trip.samples.back().position[0], stays ? 0.0 : -2.0, 1e-9);
+    EXPECT_LE(m.limits(), 1.001);
+  }
+}
+
 TEST(Thread, waits_for_a_spindle_that_stands_and_for_one_that_is_not_at_speed) {
   Lathe m;
   m.spindle.wanted = m.spindle.w = 0.0;
@@ -430,58 +399,6 @@ TEST(Thread, waits_for_a_spindle_that_stands_and_for_one_that_is_not_at_speed) {
   EXPECT_EQ(m.trip.samples.back().starved, 0u);
   m.spindle.wanted = 10.0;
   ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::idle; }));
-}
-
-/// A tap to `depth`: the spindle obeys what the follower asks for.
-struct Tapping : Lathe {
-  explicit Tapping(double depth, double lead_mm) {
-    Element in = thread_to(0, -depth, lead_mm);
-    in.lock.kind = Lock::Kind::tap_in;
-    in.transition.continuation = Continuation::exact_stop;
-    Element out = in;
-    out.to = {};
-    out.lock.kind = Lock::Kind::tap_out;
-    add(in);
-    add(out);
-    planner.finish();
-  }
-};
-
-TEST(Tap, goes_with_its_spindle_to_the_depth_and_back_and_says_how_far_it_went_beyond) {
-  for (const double dead : {0.001, 0.020}) {
-    Tapping m(20.0, 1.25);
-    m.spindle.dead_s = dead;
-    double deepest = 0.0, worst = 0.0, at_lock = 1e9;
-    int locked = 0, asked = 0;  // the order is as long under way as a reading
-    ASSERT_TRUE(m.until([&](const Sample& s) {
-      if (s.master.reverse && ++asked > dead / 0.001) m.spindle.wanted = -10.0;
-      deepest = std::min(deepest, s.position[2]);
-      if (s.master.locked && locked++ == 0) at_lock = -s.position[2] - 1.25 * m.spindle.n;
-      if (s.master.locked) worst = std::max(worst, std::abs(-s.position[2] - 1.25 * m.spindle.n - at_lock));
-      return s.state == FollowerState::idle;
-    }));
-    const double overshoot = m.trip.samples.back().master.overshoot;
-    const double bound = phase_bound(m.spindle.quality(), 1.25);
-    std::printf("tap: deepest %.4f mm, overshoot said %.4f mm, off its spindle %.4f mm, bound %.4f\n",
-                -deepest, overshoot, worst, bound);
-    EXPECT_NEAR(std::max(0.0, -deepest - 20.0), overshoot, 1e-6);
-    EXPECT_LE(std::abs(deepest + 20.0), 1.25) << "within a revolution of its depth";
-    EXPECT_LE(worst, 2.0 * bound);
-    EXPECT_EQ(m.trip.samples.back().position, Vector{});
-    EXPECT_LE(m.limits(), 1.001);
-  }
-}
-
-TEST(Tap, that_is_stopped_goes_with_its_spindle_until_that_stands) {
-  Tapping m(30.0, 1.0);
-  ASSERT_TRUE(m.until([](const Sample& s) { return s.master.locked && s.position[2] < -10.0; }));
-  m.follower.stop();
-  ASSERT_TRUE(m.until([&](const Sample& s) {
-    if (s.master.halt) m.spindle.wanted = 0.0;
-    return s.state == FollowerState::stopped;
-  }));
-  EXPECT_NEAR(m.trip.samples.back().position[0], 0.0, 1e-12) << "a tap is not pulled aside";
-  EXPECT_LE(m.limits(), 1.001);
 }
 
 }  // namespace

@@ -10,10 +10,13 @@
 #include <vector>
 
 #include "kernel/program/interpreter/interpreter.hpp"
+#include "tests/program/cut_judge.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::program {
 namespace {
+
+using tests::Stock;
 
 struct Point2 {
   double a = 0.0, r = 0.0;
@@ -113,47 +116,25 @@ std::vector<Move> moves_of(const Groove& g, const std::string& text) {
 }
 
 constexpr int kCases = 200;
-constexpr double kGrid = 0.01, kLeft = -5.0, kSlack = 1e-5;
+constexpr double kGrid = Stock::kGrid, kLeft = -5.0;
 
-/// What stands of the stock over a grid.
-class Stock {
- public:
-  explicit Stock(const Groove& g) : end_(g.points.back().a + 5.0) {
-    for (double a = kLeft; a <= end_; a += kGrid) {
-      const bool free = (a < 0.0 && g.open_left()) || (a > g.points.back().a && g.open_right());
-      const bool beside = a < 0.0 || a > g.points.back().a;
-      heights_.push_back(free ? -1e9 : beside ? g.bottom(a) : g.top());
-    }
-  }
-  /// The tool moves; "" or what was wrong.
-  std::string take(const Groove& g, const Move& move, double raised_along, double raised_out) {
-    const double low = std::min(move.from.a, move.to.a), high = std::max(move.from.a, move.to.a);
-    for (std::size_t n = 0; n < heights_.size(); ++n) {
-      const double a = kLeft + static_cast<double>(n) * kGrid;
-      if (a < low - kSlack || a > high + kSlack) continue;
-      const double s = high - low < 1e-9 ? 0.0 : (a - move.from.a) / (move.to.a - move.from.a);
-      const double r =
-          high - low < 1e-9 ? std::min(move.from.r, move.to.r) : move.from.r + s * (move.to.r - move.from.r);
-      if (move.rapid && r < heights_[n] - 1e-4)
-        return "rapid in the material at " + number(a) + ", " + number(r);
-      double must = -1e9;
-      for (const double shift : {-raised_along, 0.0, raised_along})
-        must = std::max(must, g.bottom(a + shift));
-      if (!move.rapid && must > -1e8 && r < must + raised_out - 1e-4 - slope_ * kSlack)
-        return "a gouge at " + number(a) + ": " + number(r) + " under " + number(must + raised_out);
-      if (!move.rapid) heights_[n] = std::min(heights_[n], r);
-    }
-    return "";
-  }
-  double height(double a) const {
-    return heights_[static_cast<std::size_t>(std::llround((a - kLeft) / kGrid))];
-  }
+/// What stands before: the body beside what is worked, nothing where the work is open.
+Stock blank_of(const Groove& g) {
+  return Stock(kLeft, g.points.back().a + 5.0, [&g](double a) {
+    const bool free = (a < 0.0 && g.open_left()) || (a > g.points.back().a && g.open_right());
+    const bool beside = a < 0.0 || a > g.points.back().a;
+    return free ? -1e9 : beside ? g.bottom(a) : g.top();
+  });
+}
 
- private:
-  static constexpr double slope_ = 100.0;
-  double end_;
-  std::vector<double> heights_;
-};
+/// The motion takes away what it may: the contour and its allowances stand.
+std::string take(Stock& stock, const Groove& g, const Move& move, double raised_along, double raised_out) {
+  return stock.take({move.from.a, move.from.r, move.to.a, move.to.r, !move.rapid}, [&](double a) {
+    double must = -1e9;
+    for (const double shift : {-raised_along, 0.0, raised_along}) must = std::max(must, g.bottom(a + shift));
+    return must < -1e8 ? 1e9 : must + raised_out;
+  });
+}
 
 TEST(Groove, of_random_shapes_is_cut_whole_and_nothing_else_is) {
   std::mt19937_64 random(test::property_seed());
@@ -180,10 +161,10 @@ TEST(Groove, of_random_shapes_is_cut_whole_and_nothing_else_is) {
       if (part.a != 0.0 || part.r != 0.0)
         g.points.push_back({g.points.back().a + part.a, g.points.back().r + part.r});
 
-    Stock stock(g);
+    Stock stock = blank_of(g);
     const std::string rough = program_of(g, parts, 0);
     for (const Move& move : moves_of(g, rough))
-      ASSERT_EQ(stock.take(g, move, g.allow_along, g.allow_out), "") << rough;
+      ASSERT_EQ(take(stock, g, move, g.allow_along, g.allow_out), "") << rough;
     // No more stands than a step over the allowance, wherever a pass is wide enough to go.
     const double steepest = 40.0;
     for (double a = g.allow_along + 0.1; a < g.points.back().a - g.allow_along - 0.1; a += 0.05) {
@@ -193,7 +174,7 @@ TEST(Groove, of_random_shapes_is_cut_whole_and_nothing_else_is) {
       EXPECT_LE(stock.height(a), must + g.allow_out + g.step + steepest * kGrid + 1e-6) << a << "\n" << rough;
     }
     const std::string finish = program_of(g, parts, 2);
-    for (const Move& move : moves_of(g, finish)) ASSERT_EQ(stock.take(g, move, 0.0, 0.0), "") << finish;
+    for (const Move& move : moves_of(g, finish)) ASSERT_EQ(take(stock, g, move, 0.0, 0.0), "") << finish;
     for (double a = 0.1; a < g.points.back().a - 0.1; a += 0.05) {
       double highest = -1e9, lowest = 1e9;
       for (double near = -2.0 * kGrid; near <= 2.0 * kGrid; near += kGrid / 2.0)

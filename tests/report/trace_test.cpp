@@ -107,9 +107,10 @@ TEST(CsvSink, has_the_columns_of_the_contract_first) {
   layout.spindles = 1;
   layout.signals = {{"door", {}}, {"a,b", {}}};
   EXPECT_EQ(CsvSink::header(layout),
-            "t,feed,line,X.cmd,X.act,Y.cmd,Y.act,spindle.cmd,spindle.act,X.error,Y.error,door,\"a,b\"");
+            "t,feed,line,X.cmd,X.act,Y.cmd,Y.act,spindle.cmd,spindle.act,spindle.angle,X.error,Y.error,door,"
+            "\"a,b\"");
   EXPECT_EQ(CsvSink::header(layout, {false, false}),
-            "t,feed,line,X.cmd,X.act,Y.cmd,Y.act,spindle.cmd,spindle.act");
+            "t,feed,line,X.cmd,X.act,Y.cmd,Y.act,spindle.cmd,spindle.act,spindle.angle");
 }
 
 TEST(CsvSink, writes_one_row_a_cycle_with_twelve_decimals) {
@@ -126,17 +127,19 @@ TEST(CsvSink, writes_one_row_a_cycle_with_twelve_decimals) {
   row.axes[0].command = 1.0 / 3.0;
   row.axes[0].actual = -0.25;
   row.axes[0].following_error = 0.5;
-  row.spindles[0] = {1500.0, 1499.5};
+  row.spindles[0] = {1500.0, 1499.5, 271.25};
   sink.row(row);
   row.t_ns = image::kMillisecond;
   row.signals[0] = 1;
   sink.row(row);
   sink.end(0);
   EXPECT_EQ(sink.error(), "");
-  EXPECT_EQ(content(path),
-            "t,feed,line,X.cmd,X.act,spindle.cmd,spindle.act,X.error,door\n"
-            "0.000000,33.250000000,7,0.333333333333,-0.250000000000,1500.000000,1499.500000,0.500000000,0\n"
-            "0.001000,33.250000000,7,0.333333333333,-0.250000000000,1500.000000,1499.500000,0.500000000,1\n");
+  EXPECT_EQ(
+      content(path),
+      "t,feed,line,X.cmd,X.act,spindle.cmd,spindle.act,spindle.angle,X.error,door\n"
+      "0.000000,33.250000000,7,0.333333333333,-0.250000000000,1500.000000,1499.500000,271.250,0.500000000,0\n"
+      "0.001000,33.250000000,7,0.333333333333,-0.250000000000,1500.000000,1499.500000,271.250,0.500000000,"
+      "1\n");
   std::filesystem::remove(path);
 }
 
@@ -192,6 +195,8 @@ TEST(Sample, takes_the_image_as_it_stands) {
   image->axes[1].following_error = 0.5;
   image->axes[1].homed = image->axes[1].enabled = true;
   image->spindles[0].command_rpm = 800;
+  image->spindles[0].angle_deg = 271.25;
+  image->processes[0].off_spindle_mm = -0.004;
   image->packets.set_bit(*image::parse_place("SA70"), true);
   image->packets.set_bit(image::field(image::kProcessFields, "rapid", image::process_base(0)), true);
   TraceLayout layout;
@@ -209,6 +214,8 @@ TEST(Sample, takes_the_image_as_it_stands) {
   EXPECT_EQ(row.axes[1].following_error, 0.5);
   EXPECT_TRUE(row.axes[1].homed);
   EXPECT_EQ(row.spindles[0].command_rpm, 800.0);
+  EXPECT_EQ(row.spindles[0].angle_deg, 271.25);
+  EXPECT_EQ(row.off_spindle_mm, -0.004);
   for (std::size_t n = 0; n < 80; ++n) EXPECT_EQ(row.signal(n), n == 70);
   EXPECT_FALSE(row.axes[0].enabled);
 }

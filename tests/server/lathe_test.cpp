@@ -53,9 +53,9 @@ TEST(Lathe, turns_a_bush_with_three_tools_at_constant_cutting_speed) {
   EXPECT_TRUE(report["finished"].get<bool>());
   EXPECT_TRUE(report["alarms"].empty());
   const Trace trace(file("t.csv"));
-  const std::vector<std::string> head(trace.columns.begin(), trace.columns.begin() + 9);
+  const std::vector<std::string> head(trace.columns.begin(), trace.columns.begin() + 10);
   EXPECT_EQ(head, (std::vector<std::string>{"t", "feed", "line", "X.cmd", "X.act", "Z.cmd", "Z.act",
-                                            "spindle.cmd", "spindle.act"}));
+                                            "spindle.cmd", "spindle.act", "spindle.angle"}));
   // A line once begun stays until the next one begins.
   bool begun = false;
   for (std::size_t r = 0; r < trace.rows.size(); ++r) {

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "firmware_if/text/finding.hpp"
 #include "gateway/command/latency/cyclictest.hpp"
@@ -105,6 +107,23 @@ TEST(Latency, of_the_program_is_a_histogram_with_a_verdict_for_each_cycle) {
   EXPECT_GE(facts["wake_up"]["max_us"], facts["wake_up"]["p50_us"]);
   for (const char* cycle : {"1000", "500", "250"}) EXPECT_TRUE(facts["fit"].contains(cycle)) << facts;
   EXPECT_EQ(desk.line("$SG latency socketcan:can0").code, 2) << "a bus needs a node";
+}
+
+TEST(Latency, of_a_machine_shows_every_phase_of_its_cycle) {
+  const Desk desk;
+  const Ended ended = desk.line("$SG latency --machine $MILL --seconds 0.5 --load --json");
+  EXPECT_TRUE(ended.code == 0 || ended.code == 1) << ended.err;  // a busy computer is not good enough
+  const auto facts = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_TRUE(facts.is_object()) << ended.out << ended.err;
+  EXPECT_EQ(facts["load"], true);
+  EXPECT_GT(facts["machine"]["cycle"]["count"], 0);
+  std::vector<std::string> phases;
+  for (const auto& phase : facts["machine"]["phases"]) {
+    phases.push_back(phase["phase"]);
+    EXPECT_EQ(phase["count"], facts["machine"]["cycle"]["count"]) << phase;
+  }
+  EXPECT_EQ(phases, (std::vector<std::string>{"receive", "logic", "interpolate", "axes", "send", "publish"}));
+  EXPECT_EQ(desk.line("$SG latency socketcan:can0 5 --machine $MILL").code, 2) << "either or";
 }
 
 }  // namespace

@@ -85,6 +85,30 @@ TEST(Lockstep, time_goes_to_the_earliest_instant_that_anybody_wants) {
   EXPECT_EQ(grants, (std::vector<Nanoseconds>{0, 2 * kMillisecond, 3 * kMillisecond, 4 * kMillisecond}));
 }
 
+TEST(Lockstep, whoever_asks_for_it_is_woken_by_frames_alone_or_by_nothing_before_its_time) {
+  RunningServer server(participants(3));
+  auto a = server.join("a"), frames = server.join("frames"), wish = server.join("wish");
+  for (SocketcandBus* bus : {a.get(), frames.get(), wish.get()})
+    ASSERT_EQ(bus->wait_grant(), std::optional<Nanoseconds>(0));
+  ASSERT_TRUE(frames->done(10 * kMillisecond, LockstepWake::frames));
+  ASSERT_TRUE(wish->done(10 * kMillisecond, LockstepWake::wish));
+  ASSERT_TRUE(a->done(2 * kMillisecond));
+  ASSERT_EQ(a->wait_grant(), std::optional<Nanoseconds>(2 * kMillisecond)) << "nobody else had to answer";
+  ASSERT_TRUE(a->send(make(0x100, {1})));
+  ASSERT_TRUE(a->done(10 * kMillisecond));
+  const auto end = a->wait_grant();
+  ASSERT_TRUE(end && *end > 2 * kMillisecond && *end < 3 * kMillisecond);
+  EXPECT_EQ(frames->wait_grant(), end) << "its first since the beginning";
+  CanFrame f;
+  EXPECT_TRUE(frames->receive(f));
+  EXPECT_FALSE(wish->receive(f));
+  ASSERT_TRUE(frames->done(10 * kMillisecond, LockstepWake::frames));
+  ASSERT_TRUE(a->done(10 * kMillisecond));
+  EXPECT_EQ(wish->wait_grant(), std::optional<Nanoseconds>(10 * kMillisecond));
+  ASSERT_TRUE(wish->receive(f));
+  EXPECT_EQ(f.id, 0x100u);
+}
+
 TEST(Lockstep, time_ends_where_it_was_told_to) {
   BusServerConfig config = participants(1);
   config.until = 10 * kMillisecond;

@@ -194,7 +194,8 @@ std::vector<double> samples(const Signal& s, double h) {
           s, h, [&](double t) { return move_at(s.amplitude, s.speed, s.acceleration, jerk, t).position; });
     }
     case SignalKind::sine:
-      return over_time(s, h, [&](double t) { return s.amplitude * std::sin(kTurn * s.from_hz * t); });
+      return over_time(s, h,
+                       [&](double t) { return s.amplitude * std::sin(kTurn * s.from_hz * t + s.phase_rad); });
     case SignalKind::chirp:
       return chirp(s, h);
     case SignalKind::multisine:

@@ -25,6 +25,7 @@ struct Signal {
   double duration_s = 1.0;  ///< of all but multisine and prbs, which last whole periods
   double speed = 1.0, acceleration = 10.0, jerk = 1000.0;  ///< per s, s^2, s^3; above 0
   double from_hz = 1.0, to_hz = 100.0;
+  double phase_rad = 0.0;     ///< of sine, at its first value
   std::size_t period = 1024;  ///< samples of multisine; prbs has the period 2^order - 1 next to it, held
   int periods = 1;
   /// Phases of multisine, beginning of prbs. 0: the phases of Schroeder (IEEE Trans. Inf. Theory 16, 1970),

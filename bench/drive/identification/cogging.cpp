@@ -33,93 +33,121 @@ Line straight(std::span<const double> values) {
   return {(sv - rate * st) / n, rate};
 }
 
-/// Harmonic of two courses over the even angle `phase`: value = Re(x exp(i phase)) beside a straight line.
-struct Pair {
-  Complex torque, angle;
-};
-Pair harmonic(const EvenRun& run, const Line& even, int periods) {
+/// Harmonic of the torque over the even angle: torque = Re(x exp(i periods angle)) beside a straight line.
+Complex harmonic(const EvenRun& run, const Line& even, int periods) {
   const std::size_t n = run.angle_rad.size();
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Matrix<double, 4, 2> right = Eigen::Matrix<double, 4, 2>::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
   for (std::size_t i = 0; i < n; ++i) {
     const double t = static_cast<double>(i) / static_cast<double>(n) - 0.5;
-    const double nominal = even.offset + even.rate * static_cast<double>(i);
-    const Eigen::Vector4d row(1.0, t, std::cos(periods * nominal), std::sin(periods * nominal));
+    const double phase = periods * (even.offset + even.rate * static_cast<double>(i));
+    const Eigen::Vector4d row(1.0, t, std::cos(phase), std::sin(phase));
     normal += row * row.transpose();
-    right.col(0) += row * run.torque_nm[i];
-    right.col(1) += row * (run.angle_rad[i] - nominal);
+    right += row * run.torque_nm[i];
   }
-  const Eigen::Matrix<double, 4, 2> x = normal.ldlt().solve(right);
-  return {{x(2, 0), -x(3, 0)}, {x(2, 1), -x(3, 1)}};
+  const Eigen::Vector4d x = normal.ldlt().solve(right);
+  return {x(2), -x(3)};
 }
 
-/// Torque that a swing of the angle takes, per rad.
-Complex dynamic_stiffness(const Masses& masses, double friction_slope, double w) {
-  Masses at_once = masses;
-  at_once.delay_s = 0.0;
-  at_once.viscous_nm_s = friction_slope;
-  const Complex response = response_of(at_once, std::abs(w) / kTurn);
-  // Over a falling angle a harmonic is the conjugate one.
-  return Complex(0.0, w) / (w > 0.0 ? response : std::conj(response));
+/// Mean over the runs that are slow enough for it.
+Complex mean_harmonic(std::span<const EvenRun> runs, std::span<const Line> lines, int periods) {
+  Complex sum;
+  double count = 0.0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (std::abs(periods * lines[i].rate) > kFastest) continue;
+    sum += harmonic(runs[i], lines[i], periods);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : Complex(0.0);
 }
 
-constexpr double kOfTorque = 0.02, kOfSwing = 0.02;
+/// Values about a sample, weighted by a triangle of +-n samples: what a second difference over n samples is
+/// of the acceleration.
+double smoothed(std::size_t i, std::size_t n, auto value) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k <= 2 * n; ++k) {
+    const double weight = static_cast<double>(std::min(k, 2 * n - k));
+    if (weight > 0.0) sum += weight * value(i + k - n);
+  }
+  return sum / static_cast<double>(n * n);
+}
 
-struct HeldBack {
-  Complex mean;
-  double spread = 0.0;  ///< of the runs about it, a sum of squares
-};
-
-/// Harmonics of one number of periods in all runs, and what cogging holds back in them.
-class Harmonics {
+/// Sums of runs for the least squares of three columns, each without its mean: sine, cosine, and how fast the
+/// torque falls, whose factor is the time by which it is measured after the angle.
+class CoggingSums {
  public:
-  Harmonics(std::span<const EvenRun> runs, std::span<const Line> lines, int periods, const Masses* masses) {
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const double w = periods * lines[i].rate / runs[i].period_s;
-      if (std::abs(w) * runs[i].period_s > kFastest) continue;
-      const Pair h = harmonic(runs[i], lines[i], periods);
-      const Complex stiffness =
-          masses != nullptr ? dynamic_stiffness(*masses, runs[i].friction_slope, w) : Complex(0.0);
-      all_.push_back({h.torque, stiffness * h.angle, w});
+  void add(const EvenRun& run, const Masses& masses, const FrictionCurve& friction, int periods) {
+    const std::size_t n = std::max<std::size_t>(2, static_cast<std::size_t>(kSmooth_s / run.period_s)),
+                      count = run.angle_rad.size();
+    if (count < 4 * n) return;
+    const auto& a = run.angle_rad;
+    const double h = static_cast<double>(n) * run.period_s;
+    const double mean_speed = (a.back() - a.front()) / (static_cast<double>(count - 1) * run.period_s);
+    const double w = std::abs(mean_speed) * periods;
+    const double slope =
+        (friction.at(1.02 * mean_speed) - friction.at(0.98 * mean_speed)) / (0.04 * mean_speed);
+    const Complex follows = load_by_motor(masses, slope, w);
+    const double load = masses.coupling ? masses.coupling->load_inertia_kg_m2 : 0.0;
+    const double motor = masses.inertia_kg_m2 - load;
+    Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d mean = Eigen::Vector4d::Zero();
+    double rows = 0.0;
+    for (std::size_t i = n; i + n < count; ++i) {
+      const double speed = (a[i + n] - a[i - n]) / (2.0 * h);
+      // Where it almost stands nobody knows what friction does.
+      if (speed / mean_speed < kMoves) continue;
+      const double acceleration = (a[i + n] - 2.0 * a[i] + a[i - n]) / (h * h);
+      // What leads or lags is the derivative or the integral of what swings.
+      const double off = speed - mean_speed;
+      const double load_accelerates = follows.real() * acceleration - follows.imag() * w * off;
+      const double load_speed = mean_speed + follows.real() * off + follows.imag() * acceleration / w;
+      const double takes = motor * acceleration + load * load_accelerates + friction.at(load_speed);
+      const double torque = smoothed(i, n, [&](std::size_t k) { return run.torque_nm[k]; });
+      double rises = 0.0;
+      for (std::size_t k = 0; k < n; ++k) rises += run.torque_nm[i + 1 + k] - run.torque_nm[i - 1 - k];
+      const Eigen::Vector4d row(smoothed(i, n, [&](std::size_t k) { return std::sin(periods * a[k]); }),
+                                smoothed(i, n, [&](std::size_t k) { return std::cos(periods * a[k]); }),
+                                -rises / (static_cast<double>(n) * h), torque - takes);
+      squares += row * row.transpose();
+      mean += row;
+      rows += 1.0;
     }
+    if (rows < 3.0) return;
+    runs_.push_back({squares - mean * mean.transpose() / rows, rows});
+    turns_ += std::abs(a.back() - a.front()) / kTurn;
   }
-  /// Their mean, were the torque measured `skew_s` after the angle. What the swing of the masses takes is
-  /// known to a few per cent, so a run counts the less the more that is.
-  HeldBack at(double skew_s) const {
-    HeldBack out;
-    double weights = 0.0;
-    const auto value = [&](const One& o) { return o.torque * std::polar(1.0, o.w * skew_s) - o.swing; };
-    const auto weight = [](const One& o) {
-      return std::norm(o.torque) / (std::norm(kOfTorque * o.torque) + std::norm(kOfSwing * o.swing));
-    };
-    for (const One& o : all_) {
-      out.mean += weight(o) * value(o);
-      weights += weight(o);
+  double turns() const noexcept { return turns_; }
+  /// Of the three columns. A run counts by what it leaves: a load that chatters on its friction leaves much.
+  Eigen::Vector3d solve() const {
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    for (int round = 0; round < 4; ++round) {
+      Eigen::Matrix4d all = Eigen::Matrix4d::Zero();
+      for (const Run& run : runs_) all += run.squares / (round == 0 ? 1.0 : left(run, x));
+      x = all.topLeftCorner<3, 3>().ldlt().solve(all.topRightCorner<3, 1>());
     }
-    out.mean /= weights;
-    for (const One& o : all_) out.spread += weight(o) * std::norm(value(o) - out.mean);
-    return out;
-  }
-  /// The skew at which all runs agree best, within a cycle.
-  double skew(double period_s) const {
-    constexpr int kGrid = 400;
-    double best = 0.0, spread = 1e300;
-    for (int i = -kGrid; i <= kGrid; ++i) {
-      const double s = period_s * i / kGrid, now = at(s).spread;
-      if (now < spread) {
-        spread = now;
-        best = s;
-      }
-    }
-    return best;
+    return x;
   }
 
  private:
-  struct One {
-    Complex torque, swing;
-    double w = 0.0;
+  static constexpr double kSmooth_s = 0.008, kMoves = 0.25;
+  /// How the load swings when the motor swings by one: further than that below its antiresonance.
+  static Complex load_by_motor(const Masses& masses, double friction_slope, double w) {
+    if (!masses.coupling) return 1.0;
+    const Coupling& c = *masses.coupling;
+    const Complex spring(c.stiffness_nm_rad, w * c.damping_nm_s);
+    return spring / (spring + Complex(-c.load_inertia_kg_m2 * w * w, w * friction_slope));
+  }
+  struct Run {
+    Eigen::Matrix4d squares;
+    double rows = 0.0;
   };
-  std::vector<One> all_;
+  /// Mean square of what is left of a run.
+  static double left(const Run& run, const Eigen::Vector3d& x) {
+    const Eigen::Vector4d one(x(0), x(1), x(2), -1.0);
+    return std::max(1e-18, one.dot(run.squares * one) / run.rows);
+  }
+  std::vector<Run> runs_;
+  double turns_ = 0.0;
 };
 
 }  // namespace
@@ -128,7 +156,7 @@ double Cogging::at(double angle) const noexcept {
   return amplitude_nm * std::sin(periods * angle + phase_rad);
 }
 
-std::optional<Cogging> fit_cogging(std::span<const EvenRun> runs, const Masses* masses, int most_periods) {
+std::optional<Cogging> find_cogging(std::span<const EvenRun> runs, int most_periods) {
   std::vector<Line> lines;
   auto most = static_cast<std::size_t>(std::max(0, most_periods));
   double slowest = 1e300;  // rad a sample
@@ -141,21 +169,26 @@ std::optional<Cogging> fit_cogging(std::span<const EvenRun> runs, const Masses* 
   }
   most = std::min(most, static_cast<std::size_t>(kFastest / slowest));
   if (runs.empty() || most < 3) return std::nullopt;
-  // Which harmonic it is shows the torque of the speed loop, which works against it; how large it is, the
-  // torque that is left once the uneven speed has been paid for.
+  // The torque of the speed loop works against it.
   std::vector<double> sizes(most);
   for (std::size_t i = 0; i < most; ++i)
-    sizes[i] = std::abs(Harmonics(runs, lines, static_cast<int>(i) + 1, nullptr).at(0.0).mean);
+    sizes[i] = std::abs(mean_harmonic(runs, lines, static_cast<int>(i) + 1));
   const auto best = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin()) + 1;
   const double strongest = sizes[static_cast<std::size_t>(best) - 1];
   std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(most / 2), sizes.end());
   if (strongest < 5.0 * sizes[most / 2]) return std::nullopt;
-  const Harmonics harmonics(runs, lines, best, masses);
-  // One run, or the raw torque alone, cannot tell a skew from the phase of the cogging.
-  const double skew = masses != nullptr && runs.size() > 1 ? harmonics.skew(runs.front().period_s) : 0.0;
-  const Complex found = harmonics.at(skew).mean;
   // Re(c exp(i p a)) = |c| cos(p a + arg c) = |c| sin(p a + arg c + 90 degrees).
-  return Cogging{std::abs(found), best, std::remainder(std::arg(found) + 0.25 * kTurn, kTurn)};
+  const double phase = std::arg(mean_harmonic(runs, lines, best)) + 0.25 * kTurn;
+  return Cogging{strongest, best, std::remainder(phase, kTurn)};
+}
+
+std::optional<Cogging> size_cogging(std::span<const EvenRun> runs, const Masses& masses,
+                                    const FrictionCurve& friction, int periods) {
+  CoggingSums sums;
+  for (const EvenRun& run : runs) sums.add(run, masses, friction, periods);
+  if (sums.turns() * periods < 3.0) return std::nullopt;
+  const Eigen::Vector3d x = sums.solve();
+  return Cogging{std::hypot(x(0), x(1)), periods, std::atan2(x(1), x(0))};
 }
 
 }  // namespace servogate::bench

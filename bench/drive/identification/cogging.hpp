@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "bench/drive/identification/friction.hpp"
 #include "bench/drive/identification/masses.hpp"
 
 namespace servogate::bench {
@@ -19,14 +20,18 @@ struct Cogging {
 struct EvenRun {
   std::span<const double> angle_rad, torque_nm;
   double period_s = 0.001;
-  double friction_slope = 0.0;  ///< of the friction curve at this speed, N m s/rad
 };
 
-/// The strongest harmonic of runs of at least a whole turn each, in either direction. Cogging makes the speed
-/// uneven; what that takes of the torque follows from `masses`, nullptr: nothing is known of it yet. Drives
-/// measure torque and angle a share of a cycle apart: of several runs that skew is found, too. nullopt:
+/// The strongest harmonic of runs of at least a whole turn each, in either direction, and how large it
+/// roughly is: cogging makes the speed uneven, and what that takes of the torque is not known yet. nullopt:
 /// less than a turn, or no harmonic stands out from the others five times. Not real-time safe.
-std::optional<Cogging> fit_cogging(std::span<const EvenRun> runs, const Masses* masses,
-                                   int most_periods = 300);
+std::optional<Cogging> find_cogging(std::span<const EvenRun> runs, int most_periods = 300);
+
+/// Size and phase of a harmonic whose number is known: what the torque has beside friction and inertia over
+/// the angle that was, so that an uneven speed may be as uneven as it likes. Of runs of any length in one
+/// direction each, well below the antiresonance, where the load follows. nullopt: they hold less than three
+/// periods. Not real-time safe.
+std::optional<Cogging> size_cogging(std::span<const EvenRun> runs, const Masses& masses,
+                                    const FrictionCurve& friction, int periods);
 
 }  // namespace servogate::bench

@@ -46,17 +46,44 @@ bool Guard::look_at_set_point(Loop loop, double v) {
   return true;
 }
 
+/// A quick stop that begins there with this speed ends within the travel.
+bool Guard::look_at_travel(double position, double speed) {
+  const double brakes =
+      envelope_.quick_stop_rad_s2 > 0.0 ? 0.5 * speed * speed / envelope_.quick_stop_rad_s2 : 0.0;
+  const double end = position + std::copysign(brakes, speed);
+  if (end < envelope_.travel_min_rad) return fail(Trip::travel, end, envelope_.travel_min_rad);
+  if (end > envelope_.travel_max_rad) return fail(Trip::travel, end, envelope_.travel_max_rad);
+  return true;
+}
+
 bool Guard::accepts(Loop loop, std::span<const double> set_points) {
-  double before = 0.0;
+  double before = 0.0, position = 0.0;
   for (const double v : set_points) {
     if (!look_at_set_point(loop, v)) return false;
-    const double speed = (v - before) / period_;
+    const double speed = loop == Loop::position ? (v - before) / period_ : v;
     if (loop == Loop::position && std::abs(speed) > envelope_.speed_rad_s)
       return fail(Trip::speed, speed, envelope_.speed_rad_s);
     before = v;
+    position = loop == Loop::position ? v : position + v * period_;
+    if (loop != Loop::torque && !look_at_travel(position, speed)) return false;
   }
   const double time = static_cast<double>(set_points.size()) * period_;
   return time <= envelope_.time_s || fail(Trip::time, time, envelope_.time_s);
+}
+
+bool Guard::accepts_torque(std::span<const double> set_points, const LeastLoad& load) {
+  if (!accepts(Loop::torque, set_points)) return false;
+  double position = 0.0, speed = 0.0;
+  for (const double torque : set_points) {
+    const double free = speed + torque / load.inertia_kg_m2 * period_;
+    const double held = load.friction_nm / load.inertia_kg_m2 * period_;
+    // Dry friction brings to rest and never turns a motion back.
+    speed = std::abs(free) <= held ? 0.0 : free - std::copysign(held, free);
+    position += speed * period_;
+    if (std::abs(speed) > envelope_.speed_rad_s) return fail(Trip::speed, speed, envelope_.speed_rad_s);
+    if (!look_at_travel(position, speed)) return false;
+  }
+  return true;
 }
 
 bool Guard::accepts_travel(double from, double to) {
@@ -104,9 +131,7 @@ bool Guard::look_at_answer() {
   if (powered_ && !answer_.enabled) return fail(Trip::not_enabled, answer_.statusword);
   const double speed = even_speed();
   // Where it will be in two cycles: one is lost on the bus in each direction.
-  const double soon = answer_.position_rad + 2.0 * period_ * speed;
-  if (soon < envelope_.travel_min_rad) return fail(Trip::travel, soon, envelope_.travel_min_rad);
-  if (soon > envelope_.travel_max_rad) return fail(Trip::travel, soon, envelope_.travel_max_rad);
+  if (!look_at_travel(answer_.position_rad + 2.0 * period_ * speed, speed)) return false;
   if (std::abs(speed) > kSpeedRoom * envelope_.speed_rad_s)
     return fail(Trip::speed, speed, envelope_.speed_rad_s);
   if (std::abs(mean_torque_) > kTorqueRoom * envelope_.torque_nm)

@@ -17,6 +17,16 @@ struct Envelope {
   double torque_nm = 0.0;
   double time_s = 0.0;         ///< with torque
   double following_rad = 0.0;  ///< of the position loop
+  /// How hard the drive's quick stop brakes: the travel is kept behind it. 0: unknown, then the travel is
+  /// where the stop begins.
+  double quick_stop_rad_s2 = 0.0;
+};
+
+/// What motor and load surely have at the least, so that a torque can be looked at before it acts: less of
+/// either would go further.
+struct LeastLoad {
+  double inertia_kg_m2 = 0.0;  ///< above 0
+  double friction_nm = 0.0;    ///< dry friction, both at rest and in motion
 };
 
 /// Why a run ended before its end.
@@ -53,9 +63,13 @@ class Guard {
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
-  /// Whether every set-point stays in the envelope; positions from where the drive stood at the start. What
-  /// does not is in trip(), and the guard refuses all steps.
+  /// Whether every set-point stays in the envelope, and the travel behind a quick stop in each cycle;
+  /// positions from where the drive stood at the start, speeds as if they were followed at once. What does
+  /// not is in trip(), and the guard refuses all steps. Of torques only their size is looked at:
+  /// accepts_torque().
   bool accepts(Loop loop, std::span<const double> set_points);
+  /// The same of torques, by the motion that they would give the least load.
+  bool accepts_torque(std::span<const double> set_points, const LeastLoad& load);
   /// A run that needs so much of the envelope, before it begins.
   bool accepts_travel(double from_rad, double to_rad);
 
@@ -94,6 +108,7 @@ class Guard {
   bool look_at_answer();
   bool look_at_following(Loop loop, double set_point);
   bool look_at_set_point(Loop loop, double set_point);
+  bool look_at_travel(double position_rad, double speed_rad_s);
   double even_speed() const;
 
   BenchDrive& drive_;

@@ -71,26 +71,60 @@ bool run_even_speeds(Guard& guard, const IdentifyPlan& plan, std::vector<EvenSpa
   return guard.run_at(0.0, acceleration_of(plan), 0.05);
 }
 
+bool makes_a_turn(const Arrays& a) {
+  return a.angle.size() >= 16 && std::abs(a.angle.back() - a.angle.front()) > kTurn;
+}
+
 /// From the slowest runs that make a turn, four speeds in both directions.
-std::optional<Cogging> cogging_of(const Guard& guard, const std::vector<EvenSpan>& spans,
-                                  const FrictionCurve* friction, const Masses* masses) {
+std::optional<Cogging> rough_cogging(const Guard& guard, const std::vector<EvenSpan>& spans) {
   constexpr std::size_t kRuns = 8;
   std::vector<Arrays> arrays;
   for (const EvenSpan& span : spans) {
     Arrays a = arrays_of(guard, span);
-    if (arrays.size() < kRuns && a.angle.size() >= 16 && std::abs(a.angle.back() - a.angle.front()) > kTurn)
-      arrays.push_back(std::move(a));
+    if (arrays.size() < kRuns && makes_a_turn(a)) arrays.push_back(std::move(a));
   }
   std::vector<EvenRun> runs;
-  for (const Arrays& a : arrays) {
-    const double speed =
-        (a.angle.back() - a.angle.front()) / (static_cast<double>(a.angle.size() - 1) * guard.period_s());
-    const double slope = friction != nullptr
-                             ? (friction->at(1.02 * speed) - friction->at(0.98 * speed)) / (0.04 * speed)
-                             : 0.0;
-    runs.push_back({a.angle, a.torque, guard.period_s(), slope});
+  for (const Arrays& a : arrays) runs.push_back({a.angle, a.torque, guard.period_s()});
+  return find_cogging(runs);
+}
+
+/// Where cogging is measured: far below the antiresonance, at which it would shake the load loose, and so
+/// slow that the inertia takes little of the torque; but not so slow that the load chatters on friction which
+/// falls with the speed.
+double cogging_speed(const IdentifyPlan& plan, const Identified& found) {
+  constexpr double kRigidHz = 12.0, kOfAntiresonance = 0.35, kMostOfIt = 0.5, kStribecks = 1.5;
+  const double rad_per_hz = kTurn / found.cogging->periods;
+  const auto& coupling = found.masses.coupling;
+  const double slow = coupling ? std::min(kRigidHz, kOfAntiresonance * coupling->antiresonance_hz) : kRigidHz;
+  const double fast = coupling ? kMostOfIt * coupling->antiresonance_hz : kRigidHz;
+  const double even = std::clamp(kStribecks * found.friction.stribeck_speed_rad_s, slow * rad_per_hz,
+                                 std::max(slow, fast) * rad_per_hz);
+  return std::max(plan.slow_rad_s, even);
+}
+
+/// Two even speeds, one in each direction, for the harmonic that was found.
+bool run_for_cogging(Guard& guard, const IdentifyPlan& plan, double speed, std::vector<EvenSpan>& spans) {
+  constexpr double kHold_s = 1.2;
+  guard.stage("cogging");
+  for (const double side : {1.0, -1.0}) {
+    if (!guard.run_at(side * speed, acceleration_of(plan), kSettle_s)) return false;
+    EvenSpan span{side * speed, guard.samples().size(), 0};
+    if (!guard.run_at(side * speed, acceleration_of(plan), kHold_s)) return false;
+    span.to = guard.samples().size();
+    spans.push_back(span);
   }
-  return fit_cogging(runs, masses);
+  return true;
+}
+
+/// Of the runs in which the harmonic is slow enough.
+std::optional<Cogging> sized_cogging(const Guard& guard, const std::vector<EvenSpan>& spans,
+                                     const Identified& found, double fastest) {
+  std::vector<Arrays> arrays;
+  for (const EvenSpan& span : spans)
+    if (std::abs(span.speed) <= fastest) arrays.push_back(arrays_of(guard, span));
+  std::vector<EvenRun> runs;
+  for (const Arrays& a : arrays) runs.push_back({a.angle, a.torque, guard.period_s()});
+  return size_cogging(runs, found.masses, found.friction, found.cogging->periods);
 }
 
 std::vector<FrictionPoint> friction_points(const Guard& guard, const std::vector<EvenSpan>& spans,
@@ -341,7 +375,7 @@ std::optional<Identified> identify(Guard& guard, const IdentifyPlan& plan, std::
   std::vector<EvenSpan> spans;
   guard.stage("friction");
   if (!run_even_speeds(guard, plan, spans)) return std::nullopt;
-  out.cogging = cogging_of(guard, spans, nullptr, nullptr);
+  out.cogging = rough_cogging(guard, spans);
   const auto friction = fit_friction(friction_points(guard, spans, out.cogging));
   why = "friction";
   if (!friction) return std::nullopt;
@@ -368,7 +402,12 @@ std::optional<Identified> identify(Guard& guard, const IdentifyPlan& plan, std::
   out.command_delay_s = best->command_delay_s;
   out.excitation_nm = best->excitation_nm;
 
-  out.cogging = cogging_of(guard, spans, &out.friction, &out.masses);
+  if (out.cogging) {
+    constexpr double kFaster = 1.6;  // up to so much more, runs that were made for friction count, too
+    const double speed = cogging_speed(plan, out);
+    if (!run_for_cogging(guard, plan, speed, spans)) return std::nullopt;
+    if (const auto sized = sized_cogging(guard, spans, out, kFaster * speed)) out.cogging = sized;
+  }
   out.friction_points = friction_points(guard, spans, out.cogging);
   if (const auto again = fit_friction(out.friction_points)) out.friction = *again;
   if (plan.lost_motion) {

@@ -11,7 +11,8 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 Complex controller(const LoopGains& g, double hz) {
-  return g.velocity_gain * (1.0 + g.velocity_integral / Complex(0.0, kTurn * hz));
+  const Complex pi = g.velocity_gain * (1.0 + g.velocity_integral / Complex(0.0, kTurn * hz));
+  return g.notch_hz > 0.0 ? pi * notch_at({g.notch_hz, std::max(1e-3, g.notch_depth)}, hz) : pi;
 }
 
 bool valid(const FrequencyResponse& r, double hz) { return hz >= r.valid_from_hz && hz <= r.valid_to_hz; }
@@ -49,6 +50,8 @@ bool keeps(const Tuning& t, const FrequencyResponse& open, const TuningWish& wis
   if (t.velocity.phase_margin_deg.value_or(-1.0) < wish.phase_margin_deg) return false;
   if (t.velocity.gain_margin_db && *t.velocity.gain_margin_db < wish.gain_margin_db) return false;
   if (!t.velocity.gain_margin_db && last_db(open) > -wish.gain_margin_db) return false;
+  if (wish.most_crossover_hz > 0.0 && t.velocity.crossover_hz.value_or(1e300) > wish.most_crossover_hz)
+    return false;
   return t.sensitivity_db <= wish.sensitivity_db;
 }
 
@@ -98,18 +101,16 @@ FrequencyResponse velocity_loop(const FrequencyResponse& plant, const LoopGains&
 }
 
 FrequencyResponse with_gains(const FrequencyResponse& open_loop, const LoopGains& present,
-                             const LoopGains& wanted, const Notch* notch) {
+                             const LoopGains& wanted) {
   FrequencyResponse out = open_loop;
-  for (ResponseLine& line : out.lines) {
+  for (ResponseLine& line : out.lines)
     line.value *= controller(wanted, line.hz) / controller(present, line.hz);
-    if (notch != nullptr) line.value *= notch_at(*notch, line.hz);
-  }
   return out;
 }
 
 std::optional<Tuning> expect(const FrequencyResponse& open_loop, const LoopGains& present,
-                             const LoopGains& wanted, const Notch* notch) {
-  const FrequencyResponse open = with_gains(open_loop, present, wanted, notch);
+                             const LoopGains& wanted) {
+  const FrequencyResponse open = with_gains(open_loop, present, wanted);
   Tuning t;
   t.gains = wanted;
   t.velocity = margins(open);
@@ -127,15 +128,19 @@ std::optional<Tuning> tune(const FrequencyResponse& open_loop, const LoopGains& 
   std::optional<Tuning> best;
   for (double times = wish.most_times; times >= 1.0 / wish.most_times && !best; times /= kStep) {
     LoopGains g = present;
+    if (notch != nullptr) {
+      g.notch_hz = notch->hz;
+      g.notch_depth = notch->damping;
+    }
     g.velocity_gain = present.velocity_gain * times;
     // An integral rate as a share of the crossover costs its angle: atan(share).
     for (const double share : {0.35, 0.3, 0.25, 0.2, 0.15, 0.1}) {
       g.velocity_integral = 0.0;
-      const auto rough = expect(open_loop, present, g, notch);
+      const auto rough = expect(open_loop, present, g);
       if (!rough) break;
       g.velocity_integral = share * kTurn * *rough->velocity.crossover_hz;
-      const auto now = expect(open_loop, present, g, notch);
-      if (!now || !keeps(*now, with_gains(open_loop, present, g, notch), wish)) continue;
+      const auto now = expect(open_loop, present, g);
+      if (!now || !keeps(*now, with_gains(open_loop, present, g), wish)) continue;
       best = now;
       break;
     }

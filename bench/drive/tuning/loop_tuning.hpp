@@ -8,11 +8,13 @@
 /// Gains by a measured response. Pure functions; not real-time safe.
 namespace servogate::bench {
 
-/// Of a velocity loop with PI, G (1 + R / s), and a position loop with P behind it.
+/// Of a velocity loop with PI, G (1 + R / s), a notch in its torque, and a position loop with P behind it.
 struct LoopGains {
   double velocity_gain = 0.0;      ///< G, N m s/rad; above 0
   double velocity_integral = 0.0;  ///< R, 1/s
   double position_gain = 0.0;      ///< 1/s
+  double notch_hz = 0.0;           ///< 0: there is no notch
+  double notch_depth = 1.0;        ///< how much the notch leaves at its centre, Notch::damping
 };
 
 /// What a tuned loop has to keep.
@@ -21,8 +23,9 @@ struct TuningWish {
   double gain_margin_db = 8.0;
   /// Greatest |1 / (1 + L)|: how near L comes to -1 anywhere, a resonance behind the crossover included.
   double sensitivity_db = 6.0;
-  double position_peak_db = 0.5;  ///< of the closed position loop: it does not overshoot
-  double most_times = 10.0;       ///< the gain is changed by at most so much, in either direction
+  double position_peak_db = 0.5;   ///< of the closed position loop: it does not overshoot
+  double most_times = 10.0;        ///< the gain is changed by at most so much, in either direction
+  double most_crossover_hz = 0.0;  ///< of the velocity loop; 0: as far as was measured
 };
 
 /// A notch in the torque: (s^2 + 2 d w s + w^2) / (s^2 + 2 w s + w^2), w = 2 pi hz.
@@ -44,15 +47,16 @@ struct Tuning {
 /// The open velocity loop of these gains on a plant, speed by torque, with what the drive needs from a
 /// measured speed to the torque that follows from it.
 FrequencyResponse velocity_loop(const FrequencyResponse& plant, const LoopGains& gains, double inner_delay_s);
-/// The open velocity loop with other gains, and with a notch where one is given.
+/// The open velocity loop with other gains.
 FrequencyResponse with_gains(const FrequencyResponse& open_loop, const LoopGains& present,
-                             const LoopGains& wanted, const Notch* notch = nullptr);
+                             const LoopGains& wanted);
 /// What is to be expected of gains; nullopt: |L| never falls through 1 within the range, so that nothing can
 /// be said of them.
 std::optional<Tuning> expect(const FrequencyResponse& open_loop, const LoopGains& present,
-                             const LoopGains& wanted, const Notch* notch = nullptr);
+                             const LoopGains& wanted);
 /// The stiffest gains that keep the wish: the greatest velocity gain, with it the greatest integral rate, and
-/// on that loop the greatest position gain. nullopt: none within `most_times` keeps it.
+/// on that loop the greatest position gain; with this notch, or nullptr with the present one. nullopt: none
+/// within `most_times` keeps it.
 std::optional<Tuning> tune(const FrequencyResponse& open_loop, const LoopGains& present,
                            const TuningWish& wish, const Notch* notch = nullptr);
 /// A notch for the strongest resonance of the open loop beyond its crossover; nullopt: none stands out.

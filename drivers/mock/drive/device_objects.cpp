@@ -42,9 +42,11 @@ std::vector<ObjectSpec> tuning_rows(const PlantConfig& c) {
   constexpr auto kNo = canopen::Mappable::no;
   constexpr auto kRw = canopen::Access::rw, kConstant = canopen::Access::constant;
   const auto in = [](double value, double unit) { return std::llround(value / unit); };
-  return {{tuning_object::kVelocityLoop, 0, unsigned8, kConstant, kNo, 2},
+  return {{tuning_object::kVelocityLoop, 0, unsigned8, kConstant, kNo, 4},
           {tuning_object::kVelocityLoop, 1, unsigned32, kRw, kNo, in(velocity_gain_of(c), 1e-6)},
           {tuning_object::kVelocityLoop, 2, unsigned32, kRw, kNo, in(c.velocity_integral, 1e-3)},
+          {tuning_object::kVelocityLoop, 3, unsigned32, kRw, kNo, 0},
+          {tuning_object::kVelocityLoop, 4, unsigned32, kRw, kNo, 1000},
           {tuning_object::kPositionLoop, 0, unsigned8, kConstant, kNo, 1},
           {tuning_object::kPositionLoop, 1, unsigned32, kRw, kNo, in(c.position_gain, 1e-3)}};
 }

@@ -11,43 +11,48 @@
 namespace servogate::mock {
 
 SimulatedDrive::Inside::Tuning::Tuning(const canopen::ObjectDictionary& dictionary, bool from_sheet)
-    : velocity_gain(dictionary.find(tuning_object::kVelocityLoop, 1)),
-      velocity_integral(dictionary.find(tuning_object::kVelocityLoop, 2)),
-      position_gain(dictionary.find(tuning_object::kPositionLoop, 1)) {
-  using Dictionary = canopen::ObjectDictionary;
-  if (from_sheet || velocity_gain == Dictionary::kNone || velocity_integral == Dictionary::kNone ||
-      position_gain == Dictionary::kNone) {
-    velocity_gain = Dictionary::kNone;
-    return;
-  }
-  own = {dictionary.value(velocity_gain), dictionary.value(velocity_integral),
-         dictionary.value(position_gain)};
+    : slots{
+          dictionary.find(tuning_object::kVelocityLoop, 1), dictionary.find(tuning_object::kVelocityLoop, 2),
+          dictionary.find(tuning_object::kPositionLoop, 1), dictionary.find(tuning_object::kVelocityLoop, 3),
+          dictionary.find(tuning_object::kVelocityLoop, 4)} {
+  there =
+      !from_sheet && std::find(slots.begin(), slots.end(), canopen::ObjectDictionary::kNone) == slots.end();
+  if (there) own = values(dictionary);
+}
+
+SimulatedDrive::Inside::Tuning::Values SimulatedDrive::Inside::Tuning::values(
+    const canopen::ObjectDictionary& dictionary) const noexcept {
+  Values out{};
+  for (std::size_t i = 0; i < kObjects; ++i) out[i] = dictionary.value(slots[i]);
+  return out;
 }
 
 // A loop that a master has tuned becomes the torque that it asks for.
 canopen::ServoCommand SimulatedDrive::Inside::by_own_gains(const canopen::ServoCommand& asked) noexcept {
   using Loop = canopen::ServoCommand::Loop;
   const bool closed = asked.loop == Loop::velocity || asked.loop == Loop::position;
-  if (!closed) tuning.integral = 0.0;
-  if (!closed || tuning.velocity_gain == canopen::ObjectDictionary::kNone) return asked;
-  const std::array<std::int64_t, 3> tuned{dictionary.value(tuning.velocity_gain),
-                                          dictionary.value(tuning.velocity_integral),
-                                          dictionary.value(tuning.position_gain)};
+  if (!closed) {
+    tuning.integral = 0.0;
+    tuning.notch.reset();
+  }
+  if (!closed || !tuning.there) return asked;
+  const Tuning::Values tuned = tuning.values(dictionary);
   if (tuned == tuning.own) return asked;
   const double step = static_cast<double>(config.servo_period_ns) * 1e-9;
   const double gain = static_cast<double>(tuned[0]) * 1e-6;
   const ServoGains gains{static_cast<double>(tuned[2]) * 1e-3, gain,
                          gain * static_cast<double>(tuned[1]) * 1e-3 * step, total_inertia_of(config.plant),
                          2.0 * std::numbers::pi / static_cast<double>(config.plant.counts_per_rev)};
+  tuning.notch.set(static_cast<double>(tuned[3]) * 1e-3, static_cast<double>(tuned[4]) * 1e-3, step);
   const double permille = config.plant.rated_torque_nm / 1000.0, peak = config.plant.peak_torque_nm;
   const double high = std::min(asked.torque_limit_positive * permille, peak);
   const double low = -std::min(asked.torque_limit_negative * permille, peak);
   canopen::ServoCommand out = asked;
   out.loop = Loop::torque;
-  out.torque = servo_torque(gains, asked, asked.torque * permille,
-                            {static_cast<double>(plant.state().position), plant.velocity_rad_s()}, low, high,
-                            tuning.integral) /
-               permille;
+  const double torque = servo_torque(gains, asked, asked.torque * permille,
+                                     {static_cast<double>(plant.state().position), plant.velocity_rad_s()},
+                                     low, high, tuning.integral);
+  out.torque = tuning.notch(torque) / permille;
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "drivers/mock/drive/bus_gate.hpp"
 #include "drivers/mock/drive/device_objects.hpp"
+#include "drivers/mock/drive/servo_loops.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
 #include "firmware_if/canopen/device/drive/servo_profile.hpp"
 #include "firmware_if/canopen/device/node/communication_objects.hpp"
@@ -66,9 +67,15 @@ struct SimulatedDrive::Inside {
   /// no such objects: what 60F9h and 60FBh mean there is its maker's.
   struct Tuning {
     Tuning(const canopen::ObjectDictionary& dictionary, bool from_sheet);
-    canopen::ObjectDictionary::Slot velocity_gain, velocity_integral, position_gain;
-    std::array<std::int64_t, 3> own{};  ///< as they came
+    /// Velocity gain and integral, position gain, notch and what it leaves.
+    static constexpr std::size_t kObjects = 5;
+    using Values = std::array<std::int64_t, kObjects>;
+    Values values(const canopen::ObjectDictionary& dictionary) const noexcept;
+    std::array<canopen::ObjectDictionary::Slot, kObjects> slots;
+    bool there = false;
+    Values own{};  ///< as they came
     double integral = 0.0;
+    NotchFilter notch;
   };
   Tuning tuning{dictionary, config.data_sheet != nullptr};
   canopen::DriveInputs inputs;

@@ -33,8 +33,8 @@ Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
       step_ns <= 0)
     throw std::invalid_argument("a plant needs counts, inertia, torque and a step above zero");
   if (config.stribeck_friction_nm < 0.0 || config.stribeck_speed_rad_s <= 0.0 || config.backlash_rad < 0.0 ||
-      config.torque_noise_nm < 0.0)
-    throw std::invalid_argument("a plant needs friction, backlash and noise of no negative size");
+      config.torque_noise_nm < 0.0 || config.dip_torque_nm < 0.0 || config.encoder_noise_counts < 0.0)
+    throw std::invalid_argument("a plant needs friction, backlash, dips and noise of no negative size");
   const bool spring = config.stiffness_nm_rad > 0.0 && config.load_inertia_kg_m2 > 0.0;
   if (config.backlash_rad > 0.0 && !spring)
     throw std::invalid_argument("backlash needs a load behind a coupling: load inertia and stiffness");
@@ -57,6 +57,10 @@ Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
   stop_max_counts_ = config.end_stop_max_rev * turn;
   cogging_per_count_ = config.cogging_periods * rad_per_count_;
   if (config.thermal_time_s > 0.0) thermal_step_ = -std::expm1(-h_ / config.thermal_time_s);
+  if (config.dip_torque_nm > 0.0) {
+    dip_every_ = std::max<std::int64_t>(1, std::llround(config.dip_period_s / h_));
+    dip_steps_ = std::llround(config.dip_time_s / h_);
+  }
   if (spring) {
     const double resonance =
         std::sqrt(config.stiffness_nm_rad * (1.0 / config.inertia_kg_m2 + 1.0 / config.load_inertia_kg_m2));
@@ -104,6 +108,7 @@ void Plant::step(const canopen::ServoCommand& command) noexcept {
     const double load = torque_ / config_.rated_torque_nm;
     thermal_ += thermal_step_ * (load * load - thermal_);
   }
+  ++steps_;
   measure();
 }
 
@@ -126,9 +131,10 @@ double Plant::cogging() const noexcept {
 }
 
 double Plant::dry_friction(double omega) const noexcept {
-  if (config_.stribeck_friction_nm == 0.0) return config_.coulomb_friction_nm;
+  const double dip = steps_ % dip_every_ < dip_steps_ ? config_.dip_torque_nm : 0.0;
+  if (config_.stribeck_friction_nm == 0.0) return config_.coulomb_friction_nm + dip;
   const double x = omega / config_.stribeck_speed_rad_s;
-  return config_.coulomb_friction_nm + config_.stribeck_friction_nm * std::exp(-x * x);
+  return config_.coulomb_friction_nm + dip + config_.stribeck_friction_nm * std::exp(-x * x);
 }
 
 /// From motor to load. Within the gap there is none, and where it is closed the faces press and never pull.
@@ -142,15 +148,18 @@ double Plant::coupling_torque() const noexcept {
   return side * std::max(0.0, config_.stiffness_nm_rad * pressed + side * damping);
 }
 
-/// Sum of four even distributions, of standard deviation 1. Source: xorshift64*, Vigna 2016.
+/// Between -0.5 and 0.5. Source: xorshift64*, Vigna 2016.
+double Plant::even_noise() noexcept {
+  noise_state_ ^= noise_state_ >> 12;
+  noise_state_ ^= noise_state_ << 25;
+  noise_state_ ^= noise_state_ >> 27;
+  return static_cast<double>((noise_state_ * 0x2545'F491'4F6C'DD1DULL) >> 11) * 0x1p-53 - 0.5;
+}
+
+/// Sum of four even distributions, of standard deviation 1.
 double Plant::noise() noexcept {
   double sum = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    noise_state_ ^= noise_state_ >> 12;
-    noise_state_ ^= noise_state_ << 25;
-    noise_state_ ^= noise_state_ >> 27;
-    sum += static_cast<double>((noise_state_ * 0x2545'F491'4F6C'DD1DULL) >> 11) * 0x1p-53 - 0.5;
-  }
+  for (int i = 0; i < 4; ++i) sum += even_noise();
   return std::numbers::sqrt3 * sum;
 }
 
@@ -222,6 +231,8 @@ void Plant::measure() noexcept {
     find_marks();
   }
   state_.position = whole_counts_ + encoder_error_;
+  if (config_.encoder_noise_counts > 0.0)
+    state_.position += std::llround(2.0 * config_.encoder_noise_counts * even_noise());
   state_.velocity = omega_ * counts_per_rad_;
   const double off = config_.torque_noise_nm > 0.0 ? config_.torque_noise_nm * noise() : 0.0;
   state_.torque = (torque_ + off) * nm_to_permille_;

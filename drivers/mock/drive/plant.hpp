@@ -17,7 +17,9 @@ struct PlantConfig {
   /// more.
   double stribeck_friction_nm = 0.0;
   double stribeck_speed_rad_s = 5.0;
-  double load_torque_nm = 0.0;     ///< constant, e.g. gravity of a vertical axis; + pulls towards minus
+  double load_torque_nm = 0.0;  ///< constant, e.g. gravity of a vertical axis; + pulls towards minus
+  /// A load against the motion, as friction, that comes every period for some time: a cut on a spindle.
+  double dip_torque_nm = 0.0, dip_period_s = 1.0, dip_time_s = 0.1;
   double rated_torque_nm = 2.4;    ///< 1000 permille of 6071h, 6077h
   double peak_torque_nm = 7.2;     ///< what the power stage can give
   double max_speed_rad_s = 524.0;  ///< no torque beyond it in that direction (voltage limit); 5000 rpm
@@ -46,6 +48,9 @@ struct PlantConfig {
   double backlash_rad = 0.0;
   /// Standard deviation of what the measured torque is off, bell-shaped, white and the same at every run.
   double torque_noise_nm = 0.0;
+  /// The most that a reading of the encoder is off, evenly spread, the same at every run; also what the
+  /// position loop goes by.
+  double encoder_noise_counts = 0.0;
   /// I2t: thermal time constant of the motor, which takes its rated torque for ever; 0: it never gets too
   /// hot.
   double thermal_time_s = 0.0;
@@ -94,6 +99,7 @@ class Plant {
   double cogging() const noexcept;
   double dry_friction(double omega) const noexcept;
   double coupling_torque() const noexcept;
+  double even_noise() noexcept;
   double noise() noexcept;
   double stopped_at_rigid_stops(double& counts, double omega) noexcept;
   void measure() noexcept;
@@ -107,7 +113,8 @@ class Plant {
   double permille_to_nm_, nm_to_permille_, velocity_gain_, integral_step_;
   double stop_min_counts_, stop_max_counts_;
   double total_inertia_, cogging_per_count_, thermal_step_ = 0.0;
-  int substeps_ = 0;  ///< of a compliant coupling in a step; 0: rigid
+  int substeps_ = 0;                                        ///< of a compliant coupling in a step; 0: rigid
+  std::int64_t steps_ = 0, dip_every_ = 1, dip_steps_ = 0;  ///< so far; of the load that comes and goes
   double sub_h_ = 0.0, sub_lag_ = 0.0, sub_over_motor_ = 0.0, sub_over_load_ = 0.0,
          load_viscous_divisor_ = 1.0;
   // State.

@@ -28,6 +28,21 @@ struct ServoMeasured {
 double servo_torque(const ServoGains& gains, const canopen::ServoCommand& command, double torque_nm,
                     const ServoMeasured& measured, double low, double high, double& integral) noexcept;
 
+/// A notch in the torque, (s^2 + 2 d w s + w^2) / (s^2 + 2 w s + w^2), sampled with its centre in place. All
+/// of it is real-time safe.
+class NotchFilter {
+ public:
+  /// Centre in Hz, d, and the time between two values in s. Up to 0.45 of their rate; beyond that, and at 0,
+  /// it lets everything through.
+  void set(double hz, double depth, double step) noexcept;
+  double operator()(double x) noexcept;
+  void reset() noexcept { z1_ = z2_ = 0.0; }
+
+ private:
+  double hz_ = 0.0, depth_ = 1.0;
+  double b0_ = 1.0, b1_ = 0.0, b2_ = 0.0, a1_ = 0.0, a2_ = 0.0, z1_ = 0.0, z2_ = 0.0;
+};
+
 /// N m s/rad, as the configuration says or as it follows from the inertia.
 double velocity_gain_of(const PlantConfig& config) noexcept;
 /// kg m2 of motor and load.
@@ -36,7 +51,8 @@ double total_inertia_of(const PlantConfig& config) noexcept;
 /// The objects by which a master tunes these loops, which CiA 402 leaves to the maker of the drive: units of
 /// one millionth or thousandth.
 namespace tuning_object {
-inline constexpr std::uint16_t kVelocityLoop = 0x60F9;  ///< :01 gain, 1e-6 N m s/rad; :02 integral, 1e-3 1/s
+/// :01 gain, 1e-6 N m s/rad; :02 integral, 1e-3 1/s; :03 notch, 1e-3 Hz, 0: none; :04 what it leaves, 1e-3
+inline constexpr std::uint16_t kVelocityLoop = 0x60F9;
 inline constexpr std::uint16_t kPositionLoop = 0x60FB;  ///< :01 gain, 1e-3 1/s
 }  // namespace tuning_object
 

@@ -172,6 +172,7 @@ void BusServer::hear_word(Participant& who, std::string_view element) {
     if (!at || *at != now_) return refuse(who, "done with another time than the one granted");
     who.turn = Participant::Turn::waiting;
     who.wish = wish ? *wish : kNever;
+    who.wake = lockstep_wake(words.next());
     watch_wish(who);
   } else if (!element.empty()) {
     refuse(who, who.mode == Mode::greeted ? "open a bus first" : "unknown command");

@@ -72,7 +72,10 @@ class BusServer {
   // Lockstep.
   void join_lockstep(Participant& who, std::string_view name);
   bool all_done() const;
+  void begin_lockstep();
+  bool go_on();
   void grant();
+  bool wakes(const Participant& who) const noexcept;
   void watch_wish(Participant& who);
   Nanoseconds next_time();
   void end_lockstep();

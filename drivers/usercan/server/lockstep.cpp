@@ -79,51 +79,67 @@ Nanoseconds BusServer::next_time() {
   }
 }
 
+/// Whether a participant gets time now: always, but where it has asked to be left alone.
+bool BusServer::wakes(const Participant& who) const noexcept {
+  return who.wake == LockstepWake::any || who.wish <= now_ || (who.wake == LockstepWake::frames && who.heard);
+}
+
 void BusServer::watch_wish(Participant& who) {
   who.wishes_of_now = who.wish > now_ ? 0 : std::min(who.wishes_of_now + 1, kWishesOfNow + 1);
   if (who.wishes_of_now == kWishesOfNow)
     report_({&kNoLaterTime, {who.name(), std::to_string(kWishesOfNow), seconds(now_)}});
 }
 
+/// Order is by name, so that a run repeats: whoever came first is not served first.
+void BusServer::begin_lockstep() {
+  std::stable_sort(participants_.begin(), participants_.end(), [](const auto& a, const auto& b) {
+    const bool first = a->turn != Turn::none, second = b->turn != Turn::none;
+    return first != second ? first : first && a->name() < b->name();
+  });
+  for (const auto& p : participants_)
+    if (p->bus >= 0 && !buses_[static_cast<std::size_t>(p->bus)]->join(*p)) {
+      refuse(*p, "all places are taken");
+      p->closed = true;
+    }
+  begun_ = true;
+}
+
+/// To the next instant. False: time has ended.
+bool BusServer::go_on() {
+  for (const auto& p : participants_)
+    if (p->closed && p->turn != Turn::none) {
+      report_({&kLeft, {p->name(), seconds(now_)}});
+      p->turn = Turn::none;
+    }
+  const auto here = [](const auto& p) { return p->turn != Turn::none; };
+  if (std::none_of(participants_.begin(), participants_.end(), here)) return false;
+  for (const auto& p : participants_)
+    while (!p->said.empty() && buses_[static_cast<std::size_t>(p->bus)]->offer(*p, p->said.front()))
+      p->said.pop_front();
+  advance(now_ + 1);  // what was sent at this instant has begun
+  const Nanoseconds next = next_time();
+  if (next == kNever) report_({&kNobodyWantsTime, {seconds(now_)}});
+  if (next == kNever || (config_.until > 0 && next > config_.until)) return false;
+  advance(next);
+  return true;
+}
+
 void BusServer::grant() {
+  const auto woken = [this](const auto& p) { return p->turn != Turn::none && wakes(*p); };
   if (!begun_) {
-    // Whoever came first is not served first: order is by name, so that a run repeats.
-    std::stable_sort(participants_.begin(), participants_.end(), [](const auto& a, const auto& b) {
-      const bool first = a->turn != Turn::none, second = b->turn != Turn::none;
-      return first != second ? first : first && a->name() < b->name();
-    });
-    for (const auto& p : participants_)
-      if (p->bus >= 0 && !buses_[static_cast<std::size_t>(p->bus)]->join(*p)) {
-        refuse(*p, "all places are taken");
-        p->closed = true;
-      }
-    begun_ = true;
+    begin_lockstep();
   } else {
-    for (const auto& p : participants_)
-      if (p->closed && p->turn != Turn::none) {
-        report_({&kLeft, {p->name(), seconds(now_)}});
-        p->turn = Turn::none;
-      }
-    const auto here = [](const auto& p) { return p->turn != Turn::none; };
-    if (std::none_of(participants_.begin(), participants_.end(), here)) {
-      return end_lockstep();
-    }
-    for (const auto& p : participants_)
-      while (!p->said.empty() && buses_[static_cast<std::size_t>(p->bus)]->offer(*p, p->said.front()))
-        p->said.pop_front();
-    advance(now_ + 1);  // what was sent at this instant has begun
-    const Nanoseconds next = next_time();
-    if (next == kNever) report_({&kNobodyWantsTime, {seconds(now_)}});
-    if (next == kNever || (config_.until > 0 && next > config_.until)) {
-      return end_lockstep();
-    }
-    advance(next);
+    // An instant at which nobody wakes, the end of a frame that can wait, is passed over.
+    do {
+      if (!go_on()) return end_lockstep();
+    } while (std::none_of(participants_.begin(), participants_.end(), woken));
   }
   const std::string element = " < grant " + std::to_string(now_) + " >";
   for (const auto& p : participants_)
-    if (p->turn != Turn::none) {
+    if (woken(p)) {
       p->say(element);
       p->turn = Turn::working;
+      p->heard = false;
     }
   stalled_since_ = drivers::clock_ns(CLOCK_MONOTONIC);
   stall_said_ = false;

@@ -17,6 +17,7 @@ Participant::~Participant() { close(socket_); }
 
 void Participant::hear(const image::CanFrame& frame) {
   if (mode != Mode::raw || closed || (frame.remote && !wants_remote)) return;
+  heard = true;
   out_ += frame_element(frame, frame.timestamp_ns + epoch).view();
 }
 

@@ -68,10 +68,12 @@ class Participant {
   int bus = -1;         ///< of the server's
   int port = -1;        ///< place on it
   Turn turn = Turn::none;
-  Nanoseconds wish = 0;              ///< when it wants time next
-  int wishes_of_now = 0;             ///< in a row that are no later than what was granted
-  std::deque<image::CanFrame> said;  ///< in lockstep: sent, not in a mailbox yet
-  Nanoseconds epoch = 0;             ///< added to the times of frames
+  Nanoseconds wish = 0;                   ///< when it wants time next
+  LockstepWake wake = LockstepWake::any;  ///< what gives it time before that
+  bool heard = false;                     ///< a frame since its last grant
+  int wishes_of_now = 0;                  ///< in a row that are no later than what was granted
+  std::deque<image::CanFrame> said;       ///< in lockstep: sent, not in a mailbox yet
+  Nanoseconds epoch = 0;                  ///< added to the times of frames
   void set_name(std::string_view name) { name_ = name; }
 
  private:

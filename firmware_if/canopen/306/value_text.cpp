@@ -10,6 +10,7 @@
 #include "firmware_if/canopen/301/pdo_mapping.hpp"
 #include "firmware_if/canopen/306/eds.hpp"
 #include "firmware_if/canopen/306/ini.hpp"
+#include "firmware_if/text/hex.hpp"
 
 namespace servogate::canopen {
 
@@ -217,13 +218,7 @@ std::optional<std::vector<std::uint8_t>> encode_value(std::string_view text, con
 }
 
 std::string hex_text(std::span<const std::uint8_t> bytes, const char* between) {
-  std::string text;
-  char two[3];
-  for (const std::uint8_t b : bytes) {
-    std::snprintf(two, sizeof two, "%02X", b);
-    text += (text.empty() ? "" : between) + std::string(two);
-  }
-  return text;
+  return text::hex_bytes(bytes, between);
 }
 
 bool may_be(std::span<const std::uint8_t> bytes, const ValueType& type) {

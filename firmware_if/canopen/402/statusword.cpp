@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/402/statusword.hpp"
-
-#include <cstdio>
+#include "firmware_if/text/hex.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -38,11 +37,7 @@ constexpr BitText kBits[] = {
      {"drive-bit-limit", "internal limit active", "действует внутреннее ограничение"}},
 };
 
-std::string hex(std::uint16_t word) {
-  char buffer[8];
-  std::snprintf(buffer, sizeof buffer, "%04Xh", static_cast<unsigned>(word));
-  return buffer;
-}
+std::string hex(std::uint16_t word) { return text::hex_number(word, 4) + "h"; }
 
 }  // namespace
 

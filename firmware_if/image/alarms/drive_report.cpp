@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/image/alarms/drive_report.hpp"
+#include "firmware_if/text/hex.hpp"
 
-#include <cstdio>
 #include <iterator>
 
 namespace servogate::image {
@@ -56,9 +56,7 @@ std::string_view drive_state_text(int state, Language language) {
 }
 
 std::string hex_text(unsigned value, int digits) {
-  char buffer[16];
-  std::snprintf(buffer, sizeof buffer, "0x%0*X", digits, value);
-  return buffer;
+  return std::string("0x") + text::hex_number(value, digits);
 }
 
 std::string object_text(std::uint16_t index, std::uint16_t subindex) {

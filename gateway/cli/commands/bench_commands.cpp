@@ -91,6 +91,17 @@ void add_band(CLI::App& c, BenchOptions& o) {
       ->check(number_within({0.01, 2000.0, text::both("Hz", "Гц")}));
 }
 
+void add_least_load(CLI::App& c, BenchOptions& o) {
+  c.add_option(
+       "--inertia", o.inertia_kg_m2,
+       "Least inertia of motor and load in kg m2, by which --loop torque is looked at before it moves")
+      ->type_name("KGM2")
+      ->check(number_within({1e-9, 1e3, text::both("kg m2", "кг·м2")}));
+  c.add_option("--friction", o.friction_nm, "Least dry friction of both in N m, for the same (default 0)")
+      ->type_name("NM")
+      ->check(number_within({0.0, 1e4, text::both("N m", "Н·м")}));
+}
+
 void add_run(CLI::App& bench, BenchOptions& o) {
   CLI::App& c = *bench.add_subcommand("run", "Gives the drive a test signal and says how it followed.");
   add_drive(c, o);
@@ -118,8 +129,18 @@ void add_run(CLI::App& bench, BenchOptions& o) {
   c.add_option("--jerk", o.jerk, "Of jerk: jerk in rev/s3")
       ->type_name("REV/S3")
       ->check(number_within({1e-3, 1e9, text::both("rev/s3", "об/с3")}));
+  c.add_option("--with", o.with,
+               "Further nodes that get the same signal in the same cycles, each in its envelope")
+      ->type_name("NODE,...")
+      ->delimiter(',')
+      ->excludes("--read")
+      ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
+  c.add_option("--phase", o.phase_deg, "Of sine with --with: each further node is ahead by so many degrees")
+      ->type_name("DEG")
+      ->check(number_within({-360.0, 360.0, text::both("degrees", "градусов")}));
   add_band(c, o);
   add_periods(c, o);
+  add_least_load(c, o);
   c.footer(
       "Example: servogate bench run socketcan:can0 5 --signal step --loop velocity --amplitude 2 --travel "
       "-1..5 "
@@ -222,6 +243,7 @@ void add_response(CLI::App& bench, BenchOptions& o) {
       ->check(number_within({-1e6, 1e6, ""}));
   add_band(c, o);
   add_periods(c, o);
+  add_least_load(c, o);
   c.footer(
       "Example: servogate bench response socketcan:can0 5 --loop velocity --offset 2 --travel -1..60 --speed "
       "5 "
@@ -252,6 +274,10 @@ void add_tune(CLI::App& bench, BenchOptions& o) {
        "What the drive needs from a measured speed to the torque that follows from it, in ms, 0 to 20")
       ->type_name("MS")
       ->check(number_within({0.0, 20.0, text::both("ms", "мс")}));
+  c.add_option("--relay", o.relay_nm,
+               "By a relay of this torque in N m instead of a multisine: faster, and blind to resonances")
+      ->type_name("NM")
+      ->check(number_within({1e-6, 1e4, text::both("N m", "Н·м")}));
   c.add_option("--step", o.step_rev_s, "Step of the velocity that shows the change, in rev/s")
       ->type_name("REV/S")
       ->check(number_within({1e-4, 1e4, kRevS}));
@@ -301,7 +327,10 @@ void add_compare(CLI::App& bench, BenchCompareOptions& o) {
 void add_latency(CLI::App& app, LatencyOptions& o) {
   CLI::App& c = *app.add_subcommand(
       "latency", "Measures how exactly this computer keeps a cycle, and says what would make it better.");
-  c.add_option("BUS", o.bus, "Url of a bus whose SYNC is measured, too");
+  CLI::Option* bus = c.add_option("BUS", o.bus, "Url of a bus whose SYNC is measured, too");
+  c.add_option("--machine", o.machine,
+               "Machine file with simulated buses whose cycle is measured phase by phase")
+      ->excludes(bus);
   c.add_option("NODE", o.node, "Drive on it that answers with process data; it gets no power")
       ->check(number_within({1.0, 127.0, text::both("(node-ID)", "(номер узла)"), true}));
   c.add_option("--cycle", o.cycle_us, "Cycle in us, 100 to 20000")

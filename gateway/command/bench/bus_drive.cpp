@@ -24,13 +24,21 @@ const text::Entry kNoScale{"bench.no-scale", "node {0} does not say its {1}: giv
                            "узел {0} не сообщает {1}: задайте ключом {2}"};
 const text::Entry kNoBoot{"bench.no-boot", "node {0} did not come into operation within {1} s; {2}",
                           "узел {0} не начал работу за {1} с; {2}"};
-const text::Entry kNoTorqueLimit{"bench.no-torque-limit",
-                                 "node {0} has no 6072h: only this program watches its torque",
-                                 "у узла {0} нет 6072h: за его моментом следит только эта программа"};
 const text::Entry kNotSet{"bench.not-set", "{0} of node {1} cannot be set: {2}",
                           "{0} узла {1} не записывается: {2}"};
-const text::Entry kNotRestored{"bench.not-restored", "{0} of node {1} is not what it was before: {2}",
-                               "{0} узла {1} не возвращено к прежнему значению: {2}"};
+const text::Entry kTorqueCapped{"bench.torque-capped",
+                                "6072h of node {0} allows {1} N m, less than --torque. If that is not meant, "
+                                "write its value anew: a run that "
+                                "was cut off may have left it",
+                                "6072h узла {0} допускает {1} Н·м, меньше --torque. Если так не задумано, "
+                                "запишите значение заново: его мог "
+                                "оставить оборванный прогон"};
+const text::Entry kNoQuickStop{"bench.no-quick-stop",
+                               "node {0} does not say how hard its quick stop brakes ({1}): --travel is "
+                               "where a stop begins, not where it ends",
+                               "узел {0} не сообщает, как тормозит его быстрый останов ({1}): --travel — где "
+                               "останов начинается, а не где "
+                               "кончается"};
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kBootSeconds = 15;
@@ -59,6 +67,38 @@ double vl_unit(ToolBus& bus, const BenchOptions& options, const DriveFacts& fact
       unit *= static_cast<double>(*over) / static_cast<double>(*under);
   }
   return unit;
+}
+
+/// Where the deceleration of its quick stop stands. Source: CiA 402-2, 605Ah: 1 and 5 take the slow down
+/// ramp, 2 and 6 the quick stop ramp, 3, 4, 7 and 8 all the torque there is, and 0 lets the motor coast.
+std::uint16_t quick_stop_ramp(ToolBus& bus, int node) {
+  switch (number(bus, node, object::kQuickStopOption).value_or(2)) {
+    case 1:
+    case 5:
+      return object::kProfileDeceleration;
+    case 2:
+    case 6:
+      return object::kQuickStopDeceleration;
+    default:
+      return 0;
+  }
+}
+
+/// rev/s2; 0: it does not say.
+double quick_stop_of(ToolBus& bus, const BenchOptions& options, const DriveUse& use,
+                     const DriveFacts& facts) {
+  if (use.velocity == OperationMode::velocity) {
+    const auto speed = number(bus, options.node, object::kVlQuickStop, 1);
+    const auto time = number(bus, options.node, object::kVlQuickStop, 2);
+    if (!speed || !time || *time <= 0) return 0.0;
+    return static_cast<double>(*speed) / static_cast<double>(*time) * vl_unit(bus, options, facts) /
+           facts.counts_per_rev;
+  }
+  const std::uint16_t ramp = quick_stop_ramp(bus, options.node);
+  const auto value = ramp != 0 ? number(bus, options.node, ramp) : std::nullopt;
+  return value && *value > 0
+             ? static_cast<double>(*value) * velocity_unit(options, facts) / facts.counts_per_rev
+             : 0.0;
 }
 
 DriveFacts read_facts(ToolBus& bus, const BenchOptions& options) {
@@ -92,8 +132,8 @@ canopen::PdoWanted pdo(std::initializer_list<MappingEntry> entries) {
 }
 MappingEntry entry(std::uint16_t index, std::uint8_t bits) { return {index, 0, bits}; }
 
-canopen::SegmentConfig segment_of(ToolBus& bus, const BenchOptions& options, const DriveUse& use,
-                                  const DriveFacts& facts, const ObjectRecorder& recorder) {
+canopen::NodeConfig node_of(ToolBus& bus, const BenchOptions& options, const DriveUse& use,
+                            const DriveFacts& facts, const ObjectRecorder& recorder) {
   canopen::NodeConfig node;
   node.node = static_cast<canopen::NodeId>(options.node);
   node.name = "bench";
@@ -117,11 +157,7 @@ canopen::SegmentConfig segment_of(ToolBus& bus, const BenchOptions& options, con
     p.tpdo[static_cast<std::size_t>(ObjectRecorder::kFirstPdo + i)].mapping = recorder.mapping(i);
   p.modes = use.modes;
   p.check_modes = use.modes != 0;
-  canopen::SegmentConfig config;
-  config.name = "bench";
-  config.cycle_ns = std::llround(options.cycle_us * 1e3);
-  config.nodes.push_back(node);
-  return config;
+  return node;
 }
 
 }  // namespace
@@ -129,8 +165,8 @@ canopen::SegmentConfig segment_of(ToolBus& bus, const BenchOptions& options, con
 /// Sees what passes and writes it down.
 class BusDrive::Tap final : public image::CanBus {
  public:
-  Tap(ToolBus& tool, ObjectRecorder& recorder, const std::string& file)
-      : tool_(tool), bus_(*tool.transport().bus), recorder_(recorder) {
+  Tap(ToolBus& tool, const std::vector<Axis>& axes, const std::string& file)
+      : tool_(tool), bus_(*tool.transport().bus), axes_(axes) {
     if (!file.empty()) log_.open(file);
   }
   bool send(const image::CanFrame& frame) noexcept override {
@@ -146,7 +182,7 @@ class BusDrive::Tap final : public image::CanBus {
   bool receive(image::CanFrame& frame) noexcept override {
     const bool came = bus_.receive(frame);
     if (came) {
-      recorder_.on_frame(frame);
+      for (const Axis& axis : axes_) axis.recorder->on_frame(frame);
       // Its own time of arrival: it may be read a cycle later.
       if (times && !answered_ && frame.id == 0x180u + node && !frame.extended) {
         answered_ = true;
@@ -173,80 +209,111 @@ class BusDrive::Tap final : public image::CanBus {
   }
   ToolBus& tool_;
   image::CanBus& bus_;
-  ObjectRecorder& recorder_;
+  const std::vector<Axis>& axes_;
   std::ofstream log_;
   bool answered_ = true;
 };
 
-BusDrive::BusDrive(ToolBus& bus, const BenchOptions& options, const DriveUse& use, DriveFacts facts,
+BusDrive::BusDrive(ToolBus& bus, const BenchOptions& options, const DriveUse& use, std::vector<Axis> axes,
                    const std::string& log)
     : bus_(bus),
-      node_(static_cast<canopen::NodeId>(options.node)),
       period_ns_(std::llround(options.cycle_us * 1e3)),
       use_(use),
-      facts_(std::move(facts)),
-      recorder_(node_, use.record),
-      tap_(std::make_unique<Tap>(bus, recorder_, log)),
-      segment_(std::make_unique<canopen::Segment>(*tap_, segment_of(bus, options, use, facts_, recorder_))),
+      axes_(std::move(axes)),
+      tap_(std::make_unique<Tap>(bus, axes_, log)),
       image_(std::make_unique<image::ProcessImage>()),
       begin_ns_(bus.now()),
       start_ns_(begin_ns_) {
-  image_->axis_count = 1;
+  canopen::SegmentConfig config;
+  config.name = "bench";
+  config.cycle_ns = period_ns_;
+  for (const Axis& axis : axes_) {
+    config.nodes.push_back(node_of(bus, axis.options, use, axis.facts, *axis.recorder));
+    config.nodes.back().target_index = static_cast<int>(config.nodes.size()) - 1;
+  }
+  segment_ = std::make_unique<canopen::Segment>(*tap_, config);
+  image_->axis_count = static_cast<int>(axes_.size());
   image_->now.period_ns = period_ns_;
 }
 
-std::string BusDrive::change(std::uint16_t index, std::int64_t value) {
-  const SdoOutcome before = bus_.read(node_, index, 0);
-  // A drive without its own limit of the torque is watched by the bench alone; anything else must be there.
-  if (before.abort == canopen::AbortCode::object_does_not_exist && index == object::kMaxTorque) {
-    complain(kNoTorqueLimit, {std::to_string(node_)});
-    return {};
+bool BusDrive::put_right(ToolBus& bus, const BenchOptions& options) {
+  bool all = true;
+  for (const BenchOptions& one : each_drive(options)) {
+    const DriveMark mark{one.bus, static_cast<canopen::NodeId>(one.node),
+                         number(bus, one.node, object::kIdentity, 2),
+                         number(bus, one.node, object::kIdentity, 4)};
+    all = command::put_right(bus, mark, options.out) && all;
   }
-  if (!before.ok()) return before.why();
-  if (before.data.size() > 4) return text::both("it is longer than 4 bytes", "он длиннее 4 байтов");
-  std::vector<std::uint8_t> bytes(before.data.size());
-  canopen::store_le(static_cast<std::uint64_t>(value), bytes);
-  const SdoOutcome outcome = bus_.write(node_, index, 0, bytes);
-  if (!outcome.ok()) return outcome.why();
-  changed_.push_back({index, before.data});
-  return {};
+  return all;
+}
+
+bool BusDrive::prepare(Axis& axis) {
+  const BenchOptions& options = axis.options;
+  const DriveFacts& f = axis.facts;
+  const std::string node = std::to_string(options.node);
+  std::vector<std::pair<std::uint16_t, double>> wanted;
+  if (use_.moves) {
+    axis.facts.quick_stop_rev_s2 = quick_stop_of(bus_, options, use_, f);
+    if (f.quick_stop_rev_s2 == 0.0) complain(kNoQuickStop, {node, "605Ah, 6085h"});
+    const double most = static_cast<double>(number(bus_, options.node, object::kMaxTorque).value_or(65535));
+    const double torque = options.torque_nm / f.rated_torque_nm * 1000.0;
+    if (most < std::floor(torque))
+      complain(kTorqueCapped, {node, text::number(most * f.rated_torque_nm / 1000.0, 4)});
+    wanted.emplace_back(object::kMaxTorque, std::min(torque, most));
+  }
+  if (use_.profile_speed_rev_s > 0.0)
+    wanted.emplace_back(object::kProfileVelocity,
+                        use_.profile_speed_rev_s * f.counts_per_rev / velocity_unit(options, f));
+  if (use_.profile_acceleration > 0.0)
+    for (const std::uint16_t index : {object::kProfileAcceleration, object::kProfileDeceleration})
+      wanted.emplace_back(index, use_.profile_acceleration * f.counts_per_rev / velocity_unit(options, f));
+  for (const auto& [index, value] : wanted)
+    if (const std::string why = axis.changed->change(index, std::llround(value)); !why.empty()) {
+      complain(kNotSet, {canopen::address_text(index, 0), node, why});
+      return false;
+    }
+  return true;
+}
+
+std::vector<BenchOptions> each_drive(const BenchOptions& options) {
+  std::vector<BenchOptions> out{options};
+  for (const int node : options.with) {
+    out.push_back(options);
+    out.back().node = node;
+    out.back().out += "/node" + std::to_string(node);
+  }
+  return out;
 }
 
 std::unique_ptr<BusDrive> BusDrive::open(ToolBus& bus, const BenchOptions& options, const DriveUse& use,
                                          const std::string& log, int& code) {
-  DriveFacts facts = read_facts(bus, options);
-  const std::string node = std::to_string(options.node);
   code = kAlarm;
-  if (use.moves && !(facts.counts_per_rev >= 4.0)) {
-    complain(kNoScale, {node, "608Fh", "--counts"});
-    return nullptr;
-  }
-  if (use.moves && !(facts.rated_torque_nm > 0.0)) {
-    complain(kNoScale, {node, "6076h", "--rated-torque"});
-    return nullptr;
-  }
-  std::unique_ptr<BusDrive> drive(new BusDrive(bus, options, use, std::move(facts), log));
-  const DriveFacts& f = drive->facts_;
-  std::vector<std::pair<std::uint16_t, double>> wanted;
-  if (use.moves) {
-    const std::int64_t most = number(bus, options.node, object::kMaxTorque).value_or(65535);
-    wanted.emplace_back(object::kMaxTorque,
-                        std::min(options.torque_nm / f.rated_torque_nm * 1000.0, static_cast<double>(most)));
-  }
-  if (use.profile_speed_rev_s > 0.0)
-    wanted.emplace_back(object::kProfileVelocity,
-                        use.profile_speed_rev_s * f.counts_per_rev / velocity_unit(options, f));
-  if (use.profile_acceleration > 0.0)
-    for (const std::uint16_t index : {object::kProfileAcceleration, object::kProfileDeceleration})
-      wanted.emplace_back(index, use.profile_acceleration * f.counts_per_rev / velocity_unit(options, f));
-  for (const auto& [index, value] : wanted)
-    if (const std::string why = drive->change(index, std::llround(value)); !why.empty()) {
-      complain(kNotSet, {canopen::address_text(index, 0), node, why});
+  std::vector<Axis> axes;
+  for (const BenchOptions& one : each_drive(options)) {
+    DriveFacts facts = read_facts(bus, one);
+    const std::string node = std::to_string(one.node);
+    if (use.moves && !(facts.counts_per_rev >= 4.0)) {
+      complain(kNoScale, {node, "608Fh", "--counts"});
       return nullptr;
     }
+    if (use.moves && !(facts.rated_torque_nm > 0.0)) {
+      complain(kNoScale, {node, "6076h", "--rated-torque"});
+      return nullptr;
+    }
+    const auto id = static_cast<canopen::NodeId>(one.node);
+    axes.push_back(
+        {one,
+         facts,
+         std::make_unique<ObjectRecorder>(id, use.record),
+         std::make_unique<ChangedObjects>(bus, DriveMark{one.bus, id, facts.product, facts.serial}, one.out),
+         {}});
+  }
+  std::unique_ptr<BusDrive> drive(new BusDrive(bus, options, use, std::move(axes), log));
+  for (Axis& axis : drive->axes_)
+    if (!drive->prepare(axis)) return nullptr;
   drive->begin_ns_ = drive->start_ns_ = bus.now();
   if (drive->boot()) return drive;
-  complain(kNoBoot, {node, std::to_string(kBootSeconds), drive->said_});
+  complain(kNoBoot, {std::to_string(options.node), std::to_string(kBootSeconds), drive->said_});
   return nullptr;
 }
 
@@ -256,18 +323,15 @@ BusDrive::~BusDrive() {
     image_->now.t_ns += period_ns_;
     if (!bus_.wait_until(start_ns_ + image_->now.t_ns)) return;
   }
-  for (auto c = changed_.rbegin(); c != changed_.rend(); ++c) {
-    const SdoOutcome outcome = bus_.write(node_, c->index, 0, c->before);
-    if (!outcome.ok())
-      complain(kNotRestored, {canopen::address_text(c->index, 0), std::to_string(node_), outcome.why()});
-  }
+  for (Axis& axis : axes_) axis.changed->restore();
 }
 
 bool BusDrive::boot() {
-  bench::DriveAnswer answer;
+  const std::vector<bench::DriveAsk> asks(axes_.size());
+  std::vector<bench::DriveAnswer> answers(axes_.size());
   for (double t = 0.0; t < kBootSeconds && !bus_.over(); t += period_s()) {
-    if (!cycle({}, answer)) return false;
-    if (answer.online) return true;
+    if (!cycle_all(asks, answers)) return false;
+    if (std::all_of(answers.begin(), answers.end(), [](const auto& a) { return a.online; })) return true;
   }
   return false;
 }
@@ -275,6 +339,10 @@ bool BusDrive::boot() {
 double BusDrive::period_s() const noexcept { return static_cast<double>(period_ns_) * 1e-9; }
 
 bool BusDrive::cycle(const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
+  return cycle_all(std::span(&ask, 1), std::span(&answer, 1));
+}
+
+bool BusDrive::cycle_all(std::span<const bench::DriveAsk> asks, std::span<bench::DriveAnswer> answers) {
   image::Nanoseconds due = start_ns_ + image_->now.t_ns;
   if (!bus_.wait_until(due)) return false;
   // SYNCs that make up for a computer that stood still would come faster than the drive can answer.
@@ -283,60 +351,70 @@ bool BusDrive::cycle(const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
     due += late;
     ++late_;
   }
-  exchange(due, ask, answer);
+  exchange(due, asks, answers);
   return true;
 }
 
 bool BusDrive::cycle_at(image::Nanoseconds due, const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
-  exchange(due, ask, answer);
+  exchange(due, std::span(&ask, 1), std::span(&answer, 1));
   return !bus_.gone();
 }
 
 void BusDrive::begin_times() {
-  tap_->node = node_;
+  tap_->node = static_cast<canopen::NodeId>(axes_.front().options.node);
   tap_->times.emplace();
 }
 const report::Histogram& BusDrive::sync_lateness() const { return tap_->times->sync; }
 const report::Histogram& BusDrive::round_trip() const { return tap_->times->round_trip; }
 
-void BusDrive::exchange(image::Nanoseconds due, const bench::DriveAsk& ask, bench::DriveAnswer& answer) {
-  if (bus_.now() - due > period_ns_ / 2) ++late_;
-  tap_->due_ns = due;
-  answer.time_s = static_cast<double>(opened_ns_) * 1e-9;  // what comes now was latched by the SYNC before
-  opened_ns_ = bus_.now() - begin_ns_;
-  segment_->open_cycle(*image_);
-  segment_->receive(*image_);
-  recorder_.end_cycle();
-  canopen::BusEvent event;
-  while (segment_->events().pop(event))
-    said_ = canopen::describe(event, "bench", nullptr, text::user_language());
-
-  image::AxisImage& axis = image_->axes[0];
-  const image::DriveFeedback& feedback = axis.drive;
-  const double rad_per_count = kTurn / facts_.counts_per_rev;
-  const image::DriveMode modes[] = {image::DriveMode::csp, image::DriveMode::csv, image::DriveMode::cst};
-  const image::DriveMode mode = modes[static_cast<int>(ask.loop)];
+void BusDrive::read_answer(Axis& axis, const image::DriveFeedback& feedback,
+                           bench::DriveAnswer& answer) const {
   answer.online = feedback.online && feedback.missed == 0;
   answer.faulted = feedback.state == image::DriveState::fault ||
                    feedback.state == image::DriveState::fault_reaction_active;
   answer.enabled = feedback.state == image::DriveState::operation_enabled;
   answer.statusword = feedback.statusword;
   answer.error_code = feedback.error_code;
-  if (feedback.online) {
-    if (!zero_counts_) zero_counts_ = feedback.position_counts;
-    answer.position_rad = static_cast<double>(feedback.position_counts - *zero_counts_) * rad_per_count;
-    answer.torque_nm = feedback.torque_permille * facts_.rated_torque_nm / 1000.0;
-  }
-  image::DriveCommand& command = axis.drive_command;
+  if (!feedback.online) return;
+  if (!axis.zero_counts) axis.zero_counts = feedback.position_counts;
+  answer.position_rad =
+      static_cast<double>(feedback.position_counts - *axis.zero_counts) * kTurn / axis.facts.counts_per_rev;
+  answer.torque_nm = feedback.torque_permille * axis.facts.rated_torque_nm / 1000.0;
+}
+
+void BusDrive::write_command(const Axis& axis, const bench::DriveAsk& ask, image::AxisImage& image) const {
+  const double counts_per_rad = axis.facts.counts_per_rev / kTurn;
+  constexpr image::DriveMode kModes[] = {image::DriveMode::csp, image::DriveMode::csv, image::DriveMode::cst};
+  image::DriveCommand& command = image.drive_command;
   command.power = ask.power;
   command.quick_stop = ask.quick_stop;
-  command.mode = mode;
-  command.position_counts = ask.loop == bench::Loop::position && zero_counts_
-                                ? *zero_counts_ + std::llround(ask.value / rad_per_count)
-                                : feedback.position_counts;
-  command.velocity_counts_s = ask.loop == bench::Loop::velocity ? ask.value / rad_per_count : 0.0;
+  command.mode = kModes[static_cast<int>(ask.loop)];
+  command.position_counts = ask.loop == bench::Loop::position && axis.zero_counts
+                                ? *axis.zero_counts + std::llround(ask.value * counts_per_rad)
+                                : image.drive.position_counts;
+  command.velocity_counts_s = ask.loop == bench::Loop::velocity ? ask.value * counts_per_rad : 0.0;
   command.torque_permille =
-      ask.loop == bench::Loop::torque ? ask.value / facts_.rated_torque_nm * 1000.0 : 0.0;
+      ask.loop == bench::Loop::torque ? ask.value / axis.facts.rated_torque_nm * 1000.0 : 0.0;
+}
+
+void BusDrive::exchange(image::Nanoseconds due, std::span<const bench::DriveAsk> asks,
+                        std::span<bench::DriveAnswer> answers) {
+  if (bus_.now() - due > period_ns_ / 2) ++late_;
+  tap_->due_ns = due;
+  const double latched_s =
+      static_cast<double>(opened_ns_) * 1e-9;  // what comes now was latched by the SYNC before
+  opened_ns_ = bus_.now() - begin_ns_;
+  segment_->open_cycle(*image_);
+  segment_->receive(*image_);
+  for (const Axis& axis : axes_) axis.recorder->end_cycle();
+  canopen::BusEvent event;
+  while (segment_->events().pop(event))
+    said_ = canopen::describe(event, "bench", nullptr, text::user_language());
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    answers[k].time_s = latched_s;
+    read_answer(axes_[k], image_->axes[k].drive, answers[k]);
+    write_command(axes_[k], asks[k], image_->axes[k]);
+  }
   segment_->send(*image_);
   ++image_->now.number;
   image_->now.t_ns += period_ns_;

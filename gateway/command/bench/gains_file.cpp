@@ -7,8 +7,7 @@
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/inspect/object_walk.hpp"
 #include "gateway/cli/messages.hpp"
-#include "machine/files/read_file.hpp"
-#include "machine/keys/document.hpp"
+#include "gateway/command/bench/toml_file.hpp"
 
 namespace servogate::gateway::command {
 namespace {
@@ -17,8 +16,6 @@ using bench::LoopGains;
 using canopen::address_text;
 using canopen::SdoOutcome;
 
-const text::Entry kWrong{"bench.gains", "{0}:{1}: {2}", "{0}:{1}: {2}"};
-const text::Entry kSyntax{"bench.gains-syntax", "not TOML: {0}", "не TOML: {0}"};
 const text::Entry kNoGain{"bench.gains-none", "the table [velocity_gain] is missing",
                           "нет таблицы [velocity_gain]"};
 const text::Entry kForm{
@@ -36,6 +33,9 @@ const text::Entry kNotWhole{
     "в нём {0} — это не целый коэффициент: объекты REAL не записываются"};
 const text::Entry kUnknownKey{"bench.gains-key", "{0} is no table or key of a gains file",
                               "{0} — не таблица и не ключ файла коэффициентов"};
+const text::Entry kHalfNotch{"bench.gains-notch",
+                             "a notch needs both tables, [notch_frequency] and [notch_depth]",
+                             "режекторному фильтру нужны обе таблицы: [notch_frequency] и [notch_depth]"};
 const text::Entry kRange{"bench.gain-range", "{0} does not fit into the object",
                          "{0} не помещается в объект"};
 
@@ -46,22 +46,16 @@ struct Known {
 constexpr std::uint64_t kMostWhole = 1u << 24;  ///< the bits of a REAL32 are more
 constexpr Known kGains[] = {{"velocity_gain", &LoopGains::velocity_gain},
                             {"velocity_integral", &LoopGains::velocity_integral},
-                            {"position_gain", &LoopGains::position_gain}};
+                            {"position_gain", &LoopGains::position_gain},
+                            {"notch_frequency", &LoopGains::notch_hz},
+                            {"notch_depth", &LoopGains::notch_depth}};
 
-std::optional<GainsFile> wrong(const std::string& path, int line, const text::Entry& entry,
-                               const std::vector<std::string>& arguments) {
-  complain(kWrong, {path, std::to_string(line), text::render(entry, arguments, text::user_language())});
-  return std::nullopt;
-}
-
-/// "" : it was read.
-std::string read_one(canopen::SdoAccess& access, canopen::NodeId node, const GainObject& o, LoopGains& gains,
-                     std::size_t& length) {
-  const SdoOutcome outcome = access.read(node, o.at.index, o.at.subindex);
+/// "": that is its value.
+std::string take_value(const SdoOutcome& outcome, const GainObject& o, LoopGains& gains) {
   if (!outcome.ok()) return outcome.why();
-  length = outcome.data.size();
-  if (length == 0 || length > 8)
-    return text::render(kLength, std::vector<std::string>{std::to_string(length)}, text::user_language());
+  if (outcome.data.empty() || outcome.data.size() > 8)
+    return text::render(kLength, std::vector<std::string>{std::to_string(outcome.data.size())},
+                        text::user_language());
   const std::uint64_t number = canopen::load_le(outcome.data);
   if (number >= kMostWhole)
     return text::render(kNotWhole, std::vector<std::string>{std::to_string(number)}, text::user_language());
@@ -70,8 +64,9 @@ std::string read_one(canopen::SdoAccess& access, canopen::NodeId node, const Gai
   return {};
 }
 
+/// "": it was written, and read back into `gains`.
 std::string write_one(canopen::SdoAccess& access, canopen::NodeId node, const GainObject& o,
-                      const LoopGains& gains, std::size_t length) {
+                      std::size_t length, LoopGains& gains) {
   const double gain = gains.*o.gain;
   const double number = std::round((o.inverse ? 1.0 / gain : gain) / o.unit);
   if (!(number >= 0.0) || number >= std::ldexp(1.0, static_cast<int>(8 * std::min<std::size_t>(length, 4))))
@@ -79,7 +74,12 @@ std::string write_one(canopen::SdoAccess& access, canopen::NodeId node, const Ga
   std::vector<std::uint8_t> bytes(length);
   canopen::store_le(static_cast<std::uint64_t>(number), bytes);
   const SdoOutcome outcome = access.write(node, o.at.index, o.at.subindex, bytes);
-  return outcome.ok() ? std::string{} : outcome.why();
+  return outcome.ok() ? take_value(access.read(node, o.at.index, o.at.subindex), o, gains) : outcome.why();
+}
+
+void complain_of(const text::Entry& entry, const GainObject& o, canopen::NodeId node,
+                 const std::string& why) {
+  complain(entry, {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), why});
 }
 
 }  // namespace
@@ -88,28 +88,24 @@ bool GainsFile::has(double LoopGains::*gain) const {
   return std::any_of(objects.begin(), objects.end(), [&](const GainObject& o) { return o.gain == gain; });
 }
 
+bool GainsFile::has_notch() const { return has(&LoopGains::notch_hz) && has(&LoopGains::notch_depth); }
+
 std::optional<GainsFile> read_gains_file(const std::string& path) {
-  std::string why;
-  const auto bytes = files::read_file(path, files::kMostOfSettings, why);
-  if (!bytes) {
-    complain(kCannotRead, {path, why});
-    return std::nullopt;
-  }
-  const machine::Document document = machine::read_document(*bytes);
-  if (!document.ok()) return wrong(path, document.error_at.line, kSyntax, {document.error});
+  const auto document = read_toml(path);
+  if (!document) return std::nullopt;
   using Kind = machine::Element::Kind;
   GainsFile file{path, {}};
   constexpr std::string_view kKeys[] = {"object", "unit", "inverse"};
-  for (const machine::Element& table : document.root.children) {
+  for (const machine::Element& table : document->root.children) {
     if (std::none_of(std::begin(kGains), std::end(kGains),
                      [&](const Known& k) { return table.key == k.name; }))
-      return wrong(path, table.key_at.line, kUnknownKey, {table.key});
+      return wrong_line(path, table.key_at.line, kUnknownKey, {table.key});
     for (const machine::Element& key : table.children)
       if (std::find(std::begin(kKeys), std::end(kKeys), key.key) == std::end(kKeys))
-        return wrong(path, key.key_at.line, kUnknownKey, {key.key});
+        return wrong_line(path, key.key_at.line, kUnknownKey, {key.key});
   }
   for (const Known& known : kGains) {
-    const machine::Element* table = document.root.find(known.name);
+    const machine::Element* table = document->root.find(known.name);
     if (table == nullptr) continue;
     const machine::Element* object = table->find("object");
     const machine::Element* unit = table->find("unit");
@@ -118,62 +114,49 @@ std::optional<GainsFile> read_gains_file(const std::string& path) {
                                                                       : std::nullopt;
     const bool good = at && unit != nullptr && unit->numeric() && unit->number() > 0.0 &&
                       (inverse == nullptr || inverse->kind == Kind::boolean);
-    if (!good) return wrong(path, table->key_at.line, kForm, {known.name});
+    if (!good) return wrong_line(path, table->key_at.line, kForm, {known.name});
     file.objects.push_back(
         {known.name, *at, unit->number(), inverse != nullptr && inverse->boolean, known.gain});
   }
-  if (!file.has(&LoopGains::velocity_gain)) return wrong(path, 1, kNoGain, {});
+  if (!file.has(&LoopGains::velocity_gain)) return wrong_line(path, 1, kNoGain, {});
+  if (file.has(&LoopGains::notch_hz) != file.has(&LoopGains::notch_depth))
+    return wrong_line(path, 1, kHalfNotch, {});
   return file;
 }
 
-std::optional<LoopGains> read_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file) {
-  LoopGains gains;
-  std::size_t length = 0;
-  for (const GainObject& o : file.objects)
-    if (const std::string why = read_one(access, node, o, gains, length); !why.empty()) {
-      complain(kUnread, {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), why});
+std::optional<StandingGains> read_gains(canopen::SdoAccess& access, canopen::NodeId node,
+                                        const GainsFile& file) {
+  StandingGains standing;
+  for (const GainObject& o : file.objects) {
+    SdoOutcome outcome = access.read(node, o.at.index, o.at.subindex);
+    if (const std::string why = take_value(outcome, o, standing.gains); !why.empty()) {
+      complain_of(kUnread, o, node, why);
       return std::nullopt;
     }
-  return gains;
+    standing.bytes.push_back(std::move(outcome.data));
+  }
+  return standing;
 }
 
-bool write_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file, LoopGains& gains) {
-  for (const GainObject& o : file.objects) {
-    LoopGains now;
-    std::size_t length = 0;
-    std::string why = read_one(access, node, o, now, length);
-    if (why.empty()) why = write_one(access, node, o, gains, length);
-    if (why.empty()) why = read_one(access, node, o, gains, length);
+bool write_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
+                 const StandingGains& standing, LoopGains& gains) {
+  for (std::size_t n = 0; n < file.objects.size(); ++n) {
+    const std::string why = write_one(access, node, file.objects[n], standing.bytes[n].size(), gains);
     if (why.empty()) continue;
-    complain(kUnwritten, {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), why});
+    complain_of(kUnwritten, file.objects[n], node, why);
     return false;
   }
   return true;
 }
 
-std::optional<KeptGains> keep_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file) {
-  KeptGains kept;
-  for (const GainObject& o : file.objects) {
-    SdoOutcome outcome = access.read(node, o.at.index, o.at.subindex);
-    if (!outcome.ok()) {
-      complain(kUnread,
-               {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), outcome.why()});
-      return std::nullopt;
-    }
-    kept.push_back(std::move(outcome.data));
-  }
-  return kept;
-}
-
 bool restore_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
-                   const KeptGains& kept) {
+                   const StandingGains& standing) {
   bool all = true;
-  for (std::size_t n = 0; n < kept.size(); ++n) {
+  for (std::size_t n = 0; n < file.objects.size(); ++n) {
     const GainObject& o = file.objects[n];
-    const SdoOutcome outcome = access.write(node, o.at.index, o.at.subindex, kept[n]);
+    const SdoOutcome outcome = access.write(node, o.at.index, o.at.subindex, standing.bytes[n]);
     if (outcome.ok()) continue;
-    complain(kUnwritten,
-             {o.name, address_text(o.at.index, o.at.subindex), std::to_string(node), outcome.why()});
+    complain_of(kUnwritten, o, node, outcome.why());
     all = false;
   }
   return all;

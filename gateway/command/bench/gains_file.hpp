@@ -21,28 +21,30 @@ struct GainObject {
 };
 struct GainsFile {
   std::string path;
-  std::vector<GainObject>
-      objects;  ///< velocity_gain always, velocity_integral and position_gain where it has them
+  std::vector<GainObject> objects;  ///< velocity_gain always, the others where the drive has them
   bool has(double bench::LoopGains::*gain) const;
+  /// Both objects of a notch.
+  bool has_notch() const;
 };
 
 /// Reads a gains file (docs/bench.md). nullopt: it is wrong, which has been said with its line.
 std::optional<GainsFile> read_gains_file(const std::string& path);
 
-/// The gains as the drive has them; nullopt: one cannot be read, which has been said.
-std::optional<bench::LoopGains> read_gains(canopen::SdoAccess& access, canopen::NodeId node,
-                                           const GainsFile& file);
-/// Writes them, as exactly as their units allow, and reads them back into `gains`. False: one was refused,
-/// which has been said.
+/// The gains as the drive has them, and their bytes in the order of the file's objects.
+struct StandingGains {
+  bench::LoopGains gains;
+  std::vector<std::vector<std::uint8_t>> bytes;
+};
+/// nullopt: one cannot be read, which has been said.
+std::optional<StandingGains> read_gains(canopen::SdoAccess& access, canopen::NodeId node,
+                                        const GainsFile& file);
+/// Writes them, as exactly as their units allow, into objects that stand as `standing` says, and reads them
+/// back into `gains`. False: one was refused, which has been said.
 bool write_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
-                 bench::LoopGains& gains);
-/// The bytes of the gains, in the order of the file's objects.
-using KeptGains = std::vector<std::vector<std::uint8_t>>;
-/// As they stand; nullopt: one cannot be read, which has been said.
-std::optional<KeptGains> keep_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file);
-/// Writes all of them back. False: some were refused, each of which has been said.
+                 const StandingGains& standing, bench::LoopGains& gains);
+/// Writes all bytes back. False: some were refused, each of which has been said.
 bool restore_gains(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file,
-                   const KeptGains& kept);
+                   const StandingGains& standing);
 /// The gains as a DCF that `servogate od --restore` writes back into this device. Empty: they cannot be read.
 std::string gains_dcf(canopen::SdoAccess& access, canopen::NodeId node, const GainsFile& file);
 

@@ -5,30 +5,26 @@
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
-#include "machine/files/read_file.hpp"
-#include "machine/keys/document.hpp"
+#include "gateway/command/bench/toml_file.hpp"
 
 namespace servogate::gateway::command {
 namespace {
 
 using nlohmann::json;
 
-const text::Entry kWrong{"bench.limits", "{0}:{1}: {2}", "{0}:{1}: {2}"};
-const text::Entry kSyntax{"bench.limits-syntax", "not TOML: {0}", "не TOML: {0}"};
 const text::Entry kNone{"bench.limits-none", "expected a table [limits] with at least one figure",
                         "нужна таблица [limits] хотя бы с одной величиной"};
 const text::Entry kForm{
     "bench.limits-form",
     "{0}: expected {min = NUMBER, max = NUMBER} with one of both at least, or {is = \"TEXT\"}",
     "{0}: нужно {min = ЧИСЛО, max = ЧИСЛО}, хотя бы одно из двух, или {is = \"ТЕКСТ\"}"};
+const text::Entry kTable{"bench.limits-table",
+                         "{0} is no table of a file of limits: [limits] is the only one",
+                         "{0} — не таблица файла допусков: есть только [limits]"};
+const text::Entry kNever{"bench.limits-never", "{0}: min is {1} and max {2}, so nothing can pass",
+                         "{0}: min = {1}, max = {2}: годным не будет ничто"};
 const text::Entry kPass{"bench.pass", "pass  {0} = {1} ({2})", "годно     {0} = {1} ({2})"};
 const text::Entry kFail{"bench.fail", "FAIL  {0} = {1} ({2})", "НЕ ГОДНО  {0} = {1} ({2})"};
-
-std::optional<RunLimits> wrong(const std::string& path, int line, const text::Entry& entry,
-                               const std::vector<std::string>& arguments) {
-  complain(kWrong, {path, std::to_string(line), text::render(entry, arguments, text::user_language())});
-  return std::nullopt;
-}
 
 /// A figure by its path of keys, or nullptr.
 const json* figure_of(const json& meta, const std::string& path) {
@@ -51,6 +47,24 @@ bool holds(const RunLimit& limit, const json* figure) {
   return (!limit.min || value >= *limit.min) && (!limit.max || value <= *limit.max);
 }
 
+/// nullopt: it has another form.
+std::optional<RunLimit> read_limit(const machine::Element& e) {
+  RunLimit row{e.key, {}, {}, {}};
+  if (e.kind != machine::Element::Kind::table) return std::nullopt;
+  for (const machine::Element& c : e.children) {
+    if (c.key == "min" && c.numeric())
+      row.min = c.number();
+    else if (c.key == "max" && c.numeric())
+      row.max = c.number();
+    else if (c.key == "is" && c.kind == machine::Element::Kind::string)
+      row.is = c.string;
+    else
+      return std::nullopt;
+  }
+  const bool range = row.min || row.max;
+  return range != row.is.has_value() ? std::optional(row) : std::nullopt;
+}
+
 std::string range_words(const json& row) {
   if (row.contains("is")) return row["is"].get<std::string>();
   std::string out;
@@ -62,34 +76,22 @@ std::string range_words(const json& row) {
 }  // namespace
 
 std::optional<RunLimits> read_limits(const std::string& path) {
-  std::string why;
-  const auto bytes = files::read_file(path, files::kMostOfSettings, why);
-  if (!bytes) {
-    complain(kCannotRead, {path, why});
-    return std::nullopt;
-  }
-  const machine::Document document = machine::read_document(*bytes);
-  if (!document.ok()) return wrong(path, document.error_at.line, kSyntax, {document.error});
-  const machine::Element* table = document.root.find("limits");
+  const auto document = read_toml(path);
+  if (!document) return std::nullopt;
+  for (const machine::Element& e : document->root.children)
+    if (e.key != "limits") return wrong_line(path, e.key_at.line, kTable, {e.key});
+  const machine::Element* table = document->root.find("limits");
   if (table == nullptr || table->kind != machine::Element::Kind::table || table->children.empty())
-    return wrong(path, 1, kNone, {});
+    return wrong_line(path, 1, kNone, {});
   RunLimits limits{path, {}};
   for (const machine::Element& e : table->children) {
-    RunLimit row{e.key, {}, {}, {}};
-    bool known = e.kind == machine::Element::Kind::table;
-    for (const machine::Element& c : e.children) {
-      if (c.key == "min" && c.numeric())
-        row.min = c.number();
-      else if (c.key == "max" && c.numeric())
-        row.max = c.number();
-      else if (c.key == "is" && c.kind == machine::Element::Kind::string)
-        row.is = c.string;
-      else
-        known = false;
-    }
-    const bool range = row.min || row.max;
-    if (!known || range == row.is.has_value()) return wrong(path, e.key_at.line, kForm, {e.key});
-    limits.rows.push_back(std::move(row));
+    const auto row = read_limit(e);
+    if (!row) return wrong_line(path, e.key_at.line, kForm, {e.key});
+    // Written so that a bound that is no number is none, either.
+    if (row->min && row->max && !(*row->min <= *row->max))
+      return wrong_line(path, e.key_at.line, kNever,
+                        {e.key, text::number(*row->min, 9), text::number(*row->max, 9)});
+    limits.rows.push_back(*row);
   }
   return limits;
 }

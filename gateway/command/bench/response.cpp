@@ -53,7 +53,7 @@ bool response_work(BenchWork& work) {
     complain(kNoSignal, {text::number(work.guard.period_s() * 1e3)});
     return false;
   }
-  if (!work.guard.accepts(plan.loop, wanted) || !work.guard.enable(plan.loop)) return false;
+  if (!accepts_signal(work.guard, o, plan.loop, wanted) || !work.guard.enable(plan.loop)) return false;
   const auto found = bench::take_loop_response(work.guard, plan);
   if (!found) {
     work.why = text::both("response of the loop", "характеристика контура");
@@ -103,6 +103,7 @@ void say_loop_response(const bench::LoopResponse& r) {
 }
 
 int bench_response(const BenchOptions& options) {
+  if (!knows_least_load(options)) return kWrongUse;
   return on_drive("bench response", options, use_of_loop(loop_named(options.loop)), response_work);
 }
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "firmware_if/canopen/master/events/bus_event.hpp"
+#include "firmware_if/text/hex.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/command/bench/run_page.hpp"
 #include "report/html.hpp"
@@ -30,8 +32,8 @@ const text::Entry kTime{"bench.trip-time", "the time with power is over: {0} s, 
 const text::Entry kFollowing{"bench.trip-following",
                              "the drive does not follow: {0} rev behind, allowed {1} rev (--following)",
                              "привод не успевает: отставание {0} об., допустимо {1} об. (--following)"};
-const text::Entry kFault{"bench.trip-fault", "the drive reports a fault, error code {0}h (603Fh)",
-                         "привод сообщает о неисправности, код {0}h (603Fh)"};
+const text::Entry kFault{"bench.trip-fault", "the drive reports a fault, error code {0}h (603Fh): {1}",
+                         "привод сообщает о неисправности, код {0}h (603Fh): {1}"};
 const text::Entry kOffline{"bench.trip-offline", "the process data of the drive do not come any more",
                            "данные процесса от привода больше не приходят"};
 const text::Entry kNotEnabled{"bench.trip-not-enabled",
@@ -42,12 +44,6 @@ const text::Entry kGone{"bench.trip-gone", "the bus is gone", "шина исче
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr const char* kLoops[] = {"position", "velocity", "torque"};
-
-std::string hex(double value) {
-  char out[16];
-  std::snprintf(out, sizeof out, "%04X", static_cast<unsigned>(value));
-  return out;
-}
 
 /// Names of the recorded objects as columns.
 std::string heads(const ObjectRecorder& recorder) {
@@ -135,7 +131,12 @@ std::string trip_words(const bench::Guard& guard) {
                         text::user_language());
   };
   const auto with_code = [&](const text::Entry& entry) {
-    return text::render(entry, std::vector<std::string>{hex(guard.trip_value())}, text::user_language());
+    const auto code = static_cast<std::uint16_t>(guard.trip_value());
+    return text::render(
+        entry,
+        std::vector<std::string>{text::hex_number(code, 4),
+                                 canopen::describe_error_code(code, nullptr, text::user_language())},
+        text::user_language());
   };
   switch (guard.trip()) {
     case bench::Trip::none:

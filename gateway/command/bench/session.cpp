@@ -27,6 +27,20 @@ const text::Entry kBadTravel{"bench.travel",
 const text::Entry kEndedBy{"bench.ended-by", "the run has ended: {0}", "прогон завершён: {0}"};
 const text::Entry kNotFound{"bench.not-found", "the measurement does not show the {0}; see {1}/report.html",
                             "измерение не показывает: {0}; см. {1}/report.html"};
+const text::Entry kResetIt{"bench.reset",
+                           "look the code up in the manual of the drive and remove its cause; then "
+                           "`servogate sdo {0} {1} write controlword 0x80 "
+                           "u16 --i-may-move` resets the fault",
+                           "найдите код в руководстве привода и устраните причину; затем `servogate sdo {0} "
+                           "{1} write controlword 0x80 u16 "
+                           "--i-may-move` сбросит неисправность"};
+const text::Entry kNoInertia{"bench.no-inertia",
+                             "--loop torque needs --inertia: without the least inertia of motor and load "
+                             "nobody can say beforehand where the "
+                             "shaft goes (data sheet of the motor, or `bench identify`)",
+                             "для --loop torque нужен --inertia: без наименьшего момента инерции мотора и "
+                             "нагрузки нельзя заранее сказать, куда "
+                             "уйдёт вал (паспорт мотора или `bench identify`)"};
 const text::Entry kLive{"bench.live", "{0} s {1}: {2} rev, {3} rev/s, {4} N m; {5}",
                         "{0} с {1}: {2} об., {3} об/с, {4} Н·м; {5}"};
 const text::Entry kKept{"bench.kept", "kept in {0}", "сохранено в {0}"};
@@ -57,21 +71,6 @@ std::optional<bench::Envelope> envelope_of(const BenchOptions& o) {
   return e;
 }
 
-json meta_of(const char* command, const BenchOptions& o, const BusDrive& drive) {
-  return {{"schema", 1},
-          {"command", command},
-          {"bus", o.bus},
-          {"node", o.node},
-          {"drive", drive_json(drive.facts())},
-          {"envelope",
-           {{"travel_rev", o.travel},
-            {"speed_rev_s", o.speed_rev_s},
-            {"torque_nm", o.torque_nm},
-            {"time_s", o.time_s},
-            {"following_rev", o.following_rev}}},
-          {"cycle_us", o.cycle_us}};
-}
-
 void tell_live(const bench::Guard& g) {
   const bench::DriveAnswer& a = g.answer();
   tell(text::render(
@@ -86,12 +85,32 @@ void tell_live(const bench::Guard& g) {
 /// Why a run came to no result, in words; its exit code.
 int verdict(const BenchOptions& o, const bench::Guard& guard, bool found, const std::string& why) {
   if (guard.trip() != bench::Trip::none) {
-    complain(kEndedBy, {trip_words(guard)});
+    const std::string node =
+        o.with.empty() ? "" : text::both("node ", "узел ") + std::to_string(o.node) + ": ";
+    complain(kEndedBy, {node + trip_words(guard)});
+    if (guard.trip() == bench::Trip::fault) complain(kResetIt, {o.bus, std::to_string(o.node)});
     return guard.trip() == bench::Trip::ended ? kStopped : kAlarm;
   }
   if (found) return kDone;
   if (!why.empty()) complain(kNotFound, {why, o.out});
   return kAlarm;
+}
+
+}  // namespace
+
+json meta_of(const char* command, const BenchOptions& o, const BusDrive& drive, std::size_t axis) {
+  return {{"schema", 1},
+          {"command", command},
+          {"bus", o.bus},
+          {"node", o.node},
+          {"drive", drive_json(drive.facts(axis))},
+          {"envelope",
+           {{"travel_rev", o.travel},
+            {"speed_rev_s", o.speed_rev_s},
+            {"torque_nm", o.torque_nm},
+            {"time_s", o.time_s},
+            {"following_rev", o.following_rev}}},
+          {"cycle_us", o.cycle_us}};
 }
 
 int finish(BenchWork& work, bool found, const std::optional<RunLimits>& limits, bool off) {
@@ -101,7 +120,7 @@ int finish(BenchWork& work, bool found, const std::optional<RunLimits>& limits, 
   work.meta["off"] = off;
   const bool passed = !limits || judge(*limits, work.meta);
   if (!off) complain(kStillOn, {});
-  const bool written = write_run(o.out, work.guard, work.drive.recorder(), work.meta);
+  const bool written = write_run(o.out, work.guard, work.drive.recorder(work.axis), work.meta);
   if (o.json && !o.part) print_exact(work.meta.dump(1, ' ', false, json::error_handler_t::replace));
   const int code = verdict(o, work.guard, found, work.why);
   if (limits && !o.json) print_judgement(work.meta);
@@ -111,7 +130,17 @@ int finish(BenchWork& work, bool found, const std::optional<RunLimits>& limits, 
   return off && passed ? kDone : kAlarm;
 }
 
-}  // namespace
+std::unique_ptr<bench::Guard> begin_guard(bench::BenchDrive& drive, const BenchPlan& plan,
+                                          const DriveFacts& facts) {
+  bench::Envelope envelope = plan.envelope;
+  envelope.quick_stop_rad_s2 = facts.quick_stop_rev_s2 * kTurnRad;
+  return std::make_unique<bench::Guard>(drive, envelope);
+}
+
+void watch_live(bench::Guard& guard) {
+  guard.watch = tell_live;
+  guard.watch_s = kLive_s;
+}
 
 std::optional<double> number_word(std::string_view word) {
   double value = 0.0;
@@ -119,6 +148,18 @@ std::optional<double> number_word(std::string_view word) {
   const auto [at, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc{} || at != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+bool knows_least_load(const BenchOptions& o) {
+  if (o.loop != "torque" || o.inertia_kg_m2 > 0.0) return true;
+  complain(kNoInertia, {});
+  return false;
+}
+
+bool accepts_signal(bench::Guard& guard, const BenchOptions& o, bench::Loop loop,
+                    std::span<const double> set_points) {
+  return loop == bench::Loop::torque ? guard.accepts_torque(set_points, {o.inertia_kg_m2, o.friction_nm})
+                                     : guard.accepts(loop, set_points);
 }
 
 json optional_number(const std::optional<std::int64_t>& v) { return v ? json(*v) : json(nullptr); }
@@ -131,6 +172,7 @@ json drive_json(const DriveFacts& f) {
           {"revision", optional_number(f.revision)},
           {"serial", optional_number(f.serial)},
           {"dc_link_mv", optional_number(f.dc_link_mv)},
+          {"quick_stop_rev_s2", f.quick_stop_rev_s2 > 0.0 ? json(f.quick_stop_rev_s2) : json(nullptr)},
           {"counts_per_rev", f.counts_per_rev},
           {"rated_torque_nm", f.rated_torque_nm}};
 }
@@ -189,8 +231,8 @@ std::unique_ptr<ToolBus> open_bench(const BenchOptions& o, int& code) {
   auto bus = ToolBus::open(o, code);
   if (bus == nullptr) return bus;
   code = may_move(*bus, text::both("the bench", "стенд"), o);
-  if (code == kDone) return bus;
-  code = bus->finish(code);
+  if (code == kDone && BusDrive::put_right(*bus, o)) return bus;
+  code = bus->finish(code == kDone ? kAlarm : code);
   return nullptr;
 }
 
@@ -211,13 +253,12 @@ int run_on_bus(ToolBus& bus, const char* command, const BenchOptions& o, BenchPl
   const auto drive = BusDrive::open(bus, o, plan.use, o.out + "/bus.log", code);
   if (drive == nullptr) return code;
   json meta = meta_of(command, o, *drive);
-  bench::Guard guard(*drive, plan.envelope);
-  guard.watch = tell_live;
-  guard.watch_s = kLive_s;
+  const auto guard = begin_guard(*drive, plan, drive->facts());
+  watch_live(*guard);
   if (drive->key().listening()) tell(text::render(kAnyKey, {}, text::user_language()));
-  BenchWork one{o, guard, *drive, meta, {}};
+  BenchWork one{o, *guard, *drive, meta, {}};
   const bool found = work(one);
-  const bool off = guard.release();
+  const bool off = guard->release();
   plan.objects.read(bus, o.node, "after");
   if (const json facts = plan.objects.facts(); !facts.empty()) meta["objects"] = facts;
   return finish(one, found, plan.limits, off);

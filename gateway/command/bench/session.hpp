@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "bench/drive/measurement/guard.hpp"
@@ -24,6 +25,7 @@ struct BenchWork {
   BusDrive& drive;
   nlohmann::json& meta;  ///< what it found
   std::string why;       ///< it came to no result: what could not be found
+  std::size_t axis = 0;  ///< of the drive's
 };
 
 /// Objects of --read before and after a run.
@@ -60,12 +62,27 @@ std::unique_ptr<ToolBus> open_bench(const BenchOptions& options, int& code);
 /// and judges it by its limits. `work` enables the drive itself; false: it came to no result.
 int run_on_bus(ToolBus& bus, const char* command, const BenchOptions& options, BenchPlan& plan,
                const std::function<bool(BenchWork&)>& work);
+/// Its parts, for a command that leads several drives.
+std::unique_ptr<bench::Guard> begin_guard(bench::BenchDrive& drive, const BenchPlan& plan,
+                                          const DriveFacts& facts);
+/// Live values on standard error.
+void watch_live(bench::Guard& guard);
+nlohmann::json meta_of(const char* command, const BenchOptions& options, const BusDrive& drive,
+                       std::size_t axis = 0);
+/// Keeps the run and judges it; its exit code. `off`: the drive has shown that it has no torque.
+int finish(BenchWork& work, bool found, const std::optional<RunLimits>& limits, bool off);
 /// All of it.
 int on_drive(const char* command, const BenchOptions& options, const DriveUse& use,
              const std::function<bool(BenchWork&)>& work);
 
 /// The objects of --record and their data sheet; false: wrong, which has been said.
 bool read_record_option(const BenchOptions& options, std::vector<RecordedObject>& out);
+
+/// Whether --inertia is there where the loop needs it; false: not, which has been said.
+bool knows_least_load(const BenchOptions& options);
+/// Guard::accepts() of a whole signal, of torques by the least load of the options.
+bool accepts_signal(bench::Guard& guard, const BenchOptions& options, bench::Loop loop,
+                    std::span<const double> set_points);
 
 /// The value of an optional for JSON, null for none.
 nlohmann::json optional_number(const std::optional<double>& value);

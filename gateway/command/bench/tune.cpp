@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/drive/measurement/loop_response.hpp"
+#include "bench/drive/measurement/relay.hpp"
 #include "bench/drive/response/step_figures.hpp"
 #include "bench/drive/tuning/loop_tuning.hpp"
 #include "gateway/cli/messages.hpp"
@@ -39,6 +40,11 @@ const text::Entry kNotch{"bench.tune-notch",
                          "a notch at {0} Hz that leaves {1} % would allow a velocity gain of {2} N m s/rad",
                          "режекторный фильтр на {0} Гц, оставляющий {1} %, допустил бы усиление скорости {2} "
                          "Н·м·с/рад"};
+const text::Entry kNotchUsed{
+    "bench.tune-notch-used",
+    "with a notch at {0} Hz that leaves {1} %, which allows a velocity gain of {2} N m s/rad",
+    "с режекторным фильтром на {0} Гц, оставляющим {1} %: он допускает усиление скорости {2} "
+    "Н·м·с/рад"};
 const text::Entry kApplyIt{"bench.tune-apply",
                            "nothing was written; --apply writes these gains and proves them",
                            "ничего не записано; --apply запишет эти коэффициенты и проверит их"};
@@ -70,15 +76,18 @@ void say(const text::Entry& entry, const std::vector<std::string>& arguments) {
 
 /// What one set of gains does, measured.
 struct Measured {
-  std::optional<bench::LoopResponse> response;
-  std::vector<double> step;  ///< share of the step, from its beginning on
+  std::optional<bench::FrequencyResponse> plant;  ///< speed by torque
+  double most_crossover_hz = 0.0;                 ///< up to which it is known; 0: as far as it goes
+  std::vector<double> step;                       ///< share of the step, from its beginning on
   std::optional<bench::StepFigures> figures;
 };
 
 json gains_json(const LoopGains& g) {
-  return {{"velocity_gain", g.velocity_gain},
-          {"velocity_integral", g.velocity_integral},
-          {"position_gain", g.position_gain}};
+  json out{{"velocity_gain", g.velocity_gain},
+           {"velocity_integral", g.velocity_integral},
+           {"position_gain", g.position_gain}};
+  if (g.notch_hz > 0.0) out["notch"] = {{"hz", g.notch_hz}, {"left_percent", 100.0 * g.notch_depth}};
+  return out;
 }
 
 json step_json(const bench::StepFigures& f) {
@@ -104,12 +113,9 @@ class Tuner {
       : o_(options), file_(file), plan_(plan), bus_(bus), node_(static_cast<canopen::NodeId>(options.node)) {}
 
   int run() {
-    auto present = read_gains(bus_, node_, file_);
-    if (!present) return kAlarm;
-    present_ = *present;
-    auto kept = keep_gains(bus_, node_, file_);
-    if (!kept) return kAlarm;
-    kept_ = std::move(*kept);
+    auto standing = read_gains(bus_, node_, file_);
+    if (!standing) return kAlarm;
+    standing_ = std::move(*standing);
     if (!save_dcf("before.dcf")) return kInfrastructure;
     if (const int code = measure("response", "step", before_); code != kDone) return code;
     if (const int code = propose(); code != kDone) return code;
@@ -130,35 +136,67 @@ class Tuner {
 
   /// The response and a step with the gains that the drive has now.
   int measure(const std::string& response, const std::string& step, Measured& out) {
-    int code = run_on_bus(bus_, "bench tune response", part(response), plan_, [&](BenchWork& work) {
-      bench::LoopResponsePlan plan;
-      plan.excitation = o_.amplitude * kTurnRad;
-      plan.offset = o_.offset * kTurnRad;
-      plan.from_hz = o_.from_hz;
-      plan.to_hz = o_.to_hz;
-      plan.block = static_cast<std::size_t>(o_.period);
-      plan.blocks = o_.periods;
-      const auto wanted = bench::loop_excitation(plan, work.guard.period_s());
-      if (wanted.empty() || !work.guard.accepts(bench::Loop::velocity, wanted) ||
-          !work.guard.enable(bench::Loop::velocity))
-        return false;
-      out.response = bench::take_loop_response(work.guard, plan);
-      if (out.response) put_loop_response(*out.response, "velocity", work.meta);
-      work.why = text::both("response of the loop", "характеристика контура");
-      return out.response.has_value();
+    const int code = run_on_bus(bus_, "bench tune response", part(response), plan_, [&](BenchWork& work) {
+      return o_.relay_nm > 0.0 ? take_relay(work, out) : take_response(work, out);
     });
     if (code != kDone) return code;
     return run_on_bus(bus_, "bench tune step", part(step), plan_,
                       [&](BenchWork& work) { return take_step(work, out); });
   }
 
+  bool take_response(BenchWork& work, Measured& out) {
+    bench::LoopResponsePlan plan;
+    plan.excitation = o_.amplitude * kTurnRad;
+    plan.offset = o_.offset * kTurnRad;
+    plan.from_hz = o_.from_hz;
+    plan.to_hz = o_.to_hz;
+    plan.block = static_cast<std::size_t>(o_.period);
+    plan.blocks = o_.periods;
+    const auto wanted = bench::loop_excitation(plan, work.guard.period_s());
+    if (wanted.empty() || !work.guard.accepts(bench::Loop::velocity, wanted) ||
+        !work.guard.enable(bench::Loop::velocity))
+      return false;
+    auto found = bench::take_loop_response(work.guard, plan);
+    if (found) {
+      put_loop_response(*found, "velocity", work.meta);
+      out.plant = std::move(found->plant);
+    }
+    work.why = text::both("response of the loop", "характеристика контура");
+    return out.plant.has_value();
+  }
+
+  /// One frequency, by a relay; the plant is taken for an inertia, and no loop is promised beyond that
+  /// frequency.
+  bool take_relay(BenchWork& work, Measured& out) {
+    bench::RelayPlan plan;
+    plan.speed_rad_s = o_.offset * kTurnRad;
+    plan.torque_nm = o_.relay_nm;
+    if (!work.guard.accepts(bench::Loop::velocity, bench::relay_course(plan, work.guard.period_s())) ||
+        !work.guard.accepts(bench::Loop::torque, std::vector<double>{o_.relay_nm}) ||
+        !work.guard.enable(bench::Loop::velocity))
+      return false;
+    const auto found = bench::take_relay(work.guard, plan);
+    work.why = text::both("oscillation of the relay", "колебания реле");
+    if (!found) return false;
+    work.meta["figures"] = {{"hz", found->hz},
+                            {"inertia_kg_m2", found->inertia_kg_m2},
+                            {"dead_time_s", found->dead_time_s},
+                            {"swing_rev_s", found->swing_rad_s / kTurnRad}};
+    meta_["relay"] = work.meta["figures"];
+    out.plant = bench::relay_model(*found, o_.from_hz, o_.to_hz);
+    out.most_crossover_hz = found->hz;
+    return true;
+  }
+
   /// From one even speed to another, so that friction has no part in it.
   bool take_step(BenchWork& work, Measured& out) {
     bench::Guard& guard = work.guard;
     const double h = guard.period_s(), low = o_.offset * kTurnRad, high = low + o_.step_rev_s * kTurnRad;
-    const double most = std::max(std::abs(low), std::abs(high));
-    if (!guard.accepts(bench::Loop::velocity, std::vector<double>{most}) ||
-        !guard.enable(bench::Loop::velocity) || !guard.run_at(low, std::abs(low) / kStep_s + 1.0, kBefore_s))
+    const double ramp = std::abs(low) / (std::abs(low) / kStep_s + 1.0);
+    std::vector<double> course(static_cast<std::size_t>((ramp + kBefore_s) / h), low);
+    course.insert(course.end(), static_cast<std::size_t>(kStep_s / h), high);
+    if (!guard.accepts(bench::Loop::velocity, course) || !guard.enable(bench::Loop::velocity) ||
+        !guard.run_at(low, std::abs(low) / kStep_s + 1.0, kBefore_s))
       return false;
     guard.stage("step");
     period_s_ = h;
@@ -178,27 +216,29 @@ class Tuner {
 
   /// The open loop of gains on the plant as it was measured with them.
   bench::FrequencyResponse loop_with(const Measured& measured, const LoopGains& gains) const {
-    return bench::velocity_loop(measured.response->plant, gains, o_.inner_delay_ms * 1e-3);
+    return bench::velocity_loop(*measured.plant, gains, o_.inner_delay_ms * 1e-3);
   }
 
   int propose() {
     bench::TuningWish wish;
     wish.phase_margin_deg = o_.phase_margin_deg;
-    const bench::FrequencyResponse open = loop_with(before_, present_);
-    tuning_ = bench::tune(open, present_, wish);
-    meta_["gains"]["before"] = gains_json(present_);
+    wish.most_crossover_hz = before_.most_crossover_hz;
+    const bench::FrequencyResponse open = loop_with(before_, standing_.gains);
+    tuning_ = bench::tune(open, standing_.gains, wish);
+    meta_["gains"]["before"] = gains_json(standing_.gains);
     const bench::Margins now = bench::margins(open);
     meta_["before"] = {{"loop", margins_json(now)}, {"step", step_json(*before_.figures)}};
+    propose_notch(open, wish);
     if (!tuning_) {
       complain(kNone, {text::number(o_.phase_margin_deg), o_.out});
       return finish(kAlarm);
     }
     if (!file_.has(&LoopGains::velocity_integral))
-      tuning_->gains.velocity_integral = present_.velocity_integral;
-    if (!file_.has(&LoopGains::position_gain)) tuning_->gains.position_gain = present_.position_gain;
+      tuning_->gains.velocity_integral = standing_.gains.velocity_integral;
+    if (!file_.has(&LoopGains::position_gain)) tuning_->gains.position_gain = standing_.gains.position_gain;
     // What the drive cannot be given is not promised.
-    if (file_.objects.size() < 3)
-      if (auto again = bench::expect(open, present_, tuning_->gains)) tuning_ = std::move(again);
+    if (!file_.has(&LoopGains::velocity_integral) || !file_.has(&LoopGains::position_gain))
+      if (auto again = bench::expect(open, standing_.gains, tuning_->gains)) tuning_ = std::move(again);
     expected_ = bench::step_of(tuning_->closed, period_s_, kStep_s);
     const auto figures = bench::step_figures(expected_, period_s_, 0.0, 1.0, 0.05);
     meta_["gains"]["proposed"] = gains_json(tuning_->gains);
@@ -207,29 +247,32 @@ class Tuner {
                          {"bandwidth_hz", tuning_->velocity_bandwidth_hz},
                          {"sensitivity_db", tuning_->sensitivity_db}};
     if (figures) meta_["expected"]["step"] = step_json(*figures);
-    tell_gains(before_words(), present_, now, before_.figures);
+    tell_gains(before_words(), standing_.gains, now, before_.figures);
     tell_gains(expected_words(), tuning_->gains, tuning_->velocity, figures);
-    propose_notch(open, wish);
     return kDone;
   }
 
+  /// A notch that makes the loop a fifth stiffer: the drive gets it where the file names its objects.
   void propose_notch(const bench::FrequencyResponse& open, const bench::TuningWish& wish) {
     const auto notch = bench::notch_for(open);
-    const auto with = notch ? bench::tune(open, present_, wish, &*notch) : std::nullopt;
-    if (!with || with->gains.velocity_gain < 1.2 * tuning_->gains.velocity_gain) return;
+    auto with = notch ? bench::tune(open, standing_.gains, wish, &*notch) : std::nullopt;
+    if (!with || (tuning_ && with->gains.velocity_gain < 1.2 * tuning_->gains.velocity_gain)) return;
+    const bool used = file_.has_notch();
     meta_["notch"] = {{"hz", notch->hz},
                       {"left_percent", 100.0 * notch->damping},
+                      {"used", used},
                       {"gains", gains_json(with->gains)},
                       {"loop", margins_json(with->velocity)}};
     if (!o_.json)
-      say(kNotch, {text::number(notch->hz, 1), text::number(100.0 * notch->damping, 0),
-                   text::number(with->gains.velocity_gain, 6)});
+      say(used ? kNotchUsed : kNotch, {text::number(notch->hz, 1), text::number(100.0 * notch->damping, 0),
+                                       text::number(with->gains.velocity_gain, 6)});
+    if (used) tuning_ = std::move(with);
   }
 
   int apply() {
     LoopGains wanted = tuning_->gains;
     std::string why = text::both("one was refused", "один не принят");
-    int code = write_gains(bus_, node_, file_, wanted) ? kDone : kAlarm;
+    int code = write_gains(bus_, node_, file_, standing_, wanted) ? kDone : kAlarm;
     if (code == kDone) {
       meta_["gains"]["written"] = gains_json(wanted);
       written_ = wanted;
@@ -264,7 +307,7 @@ class Tuner {
   }
 
   int take_back(int code, const std::string& why) {
-    if (restore_gains(bus_, node_, file_, kept_)) {
+    if (restore_gains(bus_, node_, file_, standing_)) {
       complain(kTakenBack, {why});
     } else {
       complain(kNotBack, {o_.bus, std::to_string(o_.node), o_.out});
@@ -306,11 +349,11 @@ class Tuner {
     };
     Plot step{"Step of the velocity, share over s", {course(before_.step, before_words())}};
     Plot loop{"Open loop: gain in dB over Hz",
-              {json_column(lines_json(loop_with(before_, present_)), "hz", "db")},
+              {json_column(lines_json(loop_with(before_, standing_.gains)), "hz", "db")},
               true};
     loop.series.back().name = text::in_language(before_words());
     if (!expected_.empty()) step.series.push_back(course(expected_, expected_words()));
-    if (after_.response) {
+    if (after_.plant) {
       loop.series.push_back(json_column(lines_json(loop_with(after_, written_)), "hz", "db"));
       loop.series.back().name = text::in_language(after_words());
     }
@@ -332,8 +375,8 @@ class Tuner {
   BenchPlan& plan_;
   ToolBus& bus_;
   canopen::NodeId node_;
-  LoopGains present_, written_;
-  KeptGains kept_;  ///< what the drive had before
+  StandingGains standing_;  ///< what the drive had before
+  LoopGains written_;
   Measured before_, after_;
   std::optional<bench::Tuning> tuning_;
   std::vector<double> expected_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/canopen/od_parameters.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -31,6 +32,10 @@ const text::Entry kMany{"od.differences", "{0} of {1} parameters differ from {2}
 const text::Entry kOtherDevice{
     "od.other-device", "{0} is of another device: its {1} is {2}, node {3} has {4}; nothing was written",
     "{0} — от другого устройства: {1} в файле {2}, у узла {3} — {4}; ничего не записано"};
+const text::Entry kOtherSerial{
+    "od.other-serial",
+    "{0} is of the device with the serial number {1}, this one has {2}: its parameters are taken",
+    "{0} — от устройства с заводским номером {1}, у этого {2}: параметры берутся"};
 const text::Entry kRestored{"od.restored", "{0} parameters of node {1} written",
                             "записано параметров узла {1}: {0}"};
 const text::Entry kRefused{"od.refused", "{0} is not written: {1}", "{0}: не записано, {1}"};
@@ -68,6 +73,13 @@ const Difference* other_device(const std::vector<Difference>& found) {
     if (d.index == canopen::object::kIdentity && (d.subindex == 1 || d.subindex == 2)) return &d;
   return nullptr;
 }
+
+bool is_serial_number(const Difference& d) {
+  return d.index == canopen::object::kIdentity && d.subindex == 4;
+}
+
+/// The serial number is no parameter: the file of a device that was replaced is for its successor.
+void take_serial_number_out(std::vector<Difference>& found) { std::erase_if(found, is_serial_number); }
 
 }  // namespace
 
@@ -115,17 +127,21 @@ int restore_parameters(const OdWork& work, const canopen::Eds& file) {
   const std::string& path = work.options.restore;
   say_of_which_node(work, path, file);
   int compared = 0;
-  const auto before = canopen::differences(work.access, work.node(), file, compared, work.over);
+  auto before = canopen::differences(work.access, work.node(), file, compared, work.over);
   const ObjectCatalogue catalogue(&file);
   if (const Difference* d = other_device(before)) {
     complain(kOtherDevice, {path, place_words(catalogue, d->index, d->subindex), d->wanted,
                             std::to_string(work.options.node), got_words(*d)});
     return kAlarm;
   }
+  if (const auto d = std::find_if(before.begin(), before.end(), is_serial_number); d != before.end())
+    complain(kOtherSerial, {path, d->wanted, got_words(*d)});
+  take_serial_number_out(before);
   if (!work.options.json) print_rows(before, catalogue);
   std::vector<FailedWrite> failed;
   const int written = canopen::restore(work.access, work.node(), file, before, failed, work.over);
-  const auto after = canopen::differences(work.access, work.node(), file, compared, work.over);
+  auto after = canopen::differences(work.access, work.node(), file, compared, work.over);
+  take_serial_number_out(after);
   if (work.over()) return kInfrastructure;
   if (work.options.json) {
     json out = head(work.options);

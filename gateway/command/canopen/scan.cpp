@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `servogate scan`: who is on a CANopen bus.
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/inspect/device_words.hpp"
+#include "firmware_if/text/hex.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/options.hpp"
 #include "gateway/cli/standard_output.hpp"
@@ -130,11 +130,7 @@ void ask_states(ToolBus& bus, Nodes& nodes) {
   }
 }
 
-std::string hexadecimal(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%08Xh", value);
-  return text;
-}
+std::string hexadecimal(std::uint32_t value) { return text::hex_number(value, 8) + "h"; }
 
 std::string state_words(const Node& node) {
   const std::string state = node.state ? canopen::nmt_state_words(*node.state)

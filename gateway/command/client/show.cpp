@@ -24,6 +24,11 @@ const Entry kFeed{"client.feed", "feed {0} mm/min, override {1} %, tool {2}",
                   "подача {0} мм/мин, коррекция {1} %, инструмент {2}"};
 const Entry kRetraced{"client.stands-back", "back on its path by {0} mm",
                       "отведена назад по контуру на {0} мм"};
+const Entry kHoldsLater{"client.holds-later",
+                        "is held at the end of the thread, or when the tap has left its hole",
+                        "будет остановлена в конце резьбы или после выхода метчика из отверстия"};
+const Entry kBySpindle{"client.by-spindle", "goes with the spindle, {0} um off its angle",
+                       "идёт за шпинделем, отклонение от его угла {0} мкм"};
 const Entry kRestartAt{"client.restart-at", "begins at line {0} of {1}: {2}",
                        "начало со строки {0} файла {1}: {2}"};
 const Entry kRestartAxis{"client.restart-axis",
@@ -148,6 +153,9 @@ std::string fixed(double value, int decimals) {
 void print_program(const json& s) {
   if (const json back = s.value("retraced_mm", json()); back.is_number())
     print_line(say(kRetraced, {fixed(back.get<double>(), 3)}));
+  if (const json off = s.value("off_spindle_mm", json()); off.is_number())
+    print_line(say(kBySpindle, {fixed(1000.0 * off.get<double>(), 1)}));
+  if (s.value("holds_later", false)) print_line(say(kHoldsLater, {}));
   const std::string program = of(s, "program"), file = of(s, "file"), block = of(s, "block");
   const int line = s.value("line", 0);
   if (!block.empty()) {

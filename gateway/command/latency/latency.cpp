@@ -11,6 +11,7 @@
 #include "gateway/command/canopen/bus/foreign_master.hpp"
 #include "gateway/command/canopen/bus/held_bus.hpp"
 #include "gateway/command/latency/cyclictest.hpp"
+#include "gateway/command/latency/machine_cycle.hpp"
 #include "gateway/command/latency/this_computer.hpp"
 #include "gateway/command/latency/wake_up.hpp"
 #include "report/report.hpp"
@@ -32,6 +33,14 @@ const text::Entry kRefused{"latency.refused", "the system refused {0} ({1}): {2}
                            "система отказала: {0} ({1}): {2}"};
 const text::Entry kAdvice{"latency.advice", "{0}: {1}", "{0}: {1}"};
 const text::Entry kMissed{"latency.missed", "{0} of {1} cycles were missed", "пропущено циклов: {0} из {1}"};
+const text::Entry kReal{
+    "latency.real",
+    "{0} has a bus that is not simulated: --machine runs simulated ones only. The report of `run "
+    "--realtime` has the phases of a real one",
+    "в {0} есть не имитируемая шина: --machine работает только с имитируемыми. Фазы настоящей — в "
+    "отчёте `run --realtime`"};
+const text::Entry kNoCycle{"latency.no-cycle", "the machine was stopped before its first cycle",
+                           "станок остановлен до первого цикла"};
 const text::Entry kNode{"latency.node", "BUS needs the number of a node behind it",
                         "после ШИНЫ нужен номер узла"};
 
@@ -97,6 +106,17 @@ WakeUpPlan plan_of(const LatencyOptions& o) {
   return plan;
 }
 
+/// What takes the time of a machine's cycle.
+json phases_json(const report::CycleTimes& times) {
+  json out{{"cycle", histogram_json(times.duration())}, {"phases", json::array()}};
+  for (std::size_t n = 0; n < times.phase_names().size(); ++n) {
+    json row = histogram_json(times.phase(n));
+    row["phase"] = times.phase_names()[n];
+    out["phases"].push_back(std::move(row));
+  }
+  return out;
+}
+
 json facts_of(const LatencyOptions& o, const WakeUp& measured) {
   json out{{"schema", 1},
            {"cycle_us", o.cycle_us},
@@ -121,6 +141,14 @@ void print_facts(const LatencyOptions& o, const WakeUp& measured, const json& fa
   if (facts.contains("sync")) print_histogram("SYNC", facts["sync"]);
   if (facts.contains("round_trip"))
     print_histogram(text::both("SYNC to process data", "от SYNC до данных процесса"), facts["round_trip"]);
+  if (const auto machine = facts.find("machine"); machine != facts.end()) {
+    print_histogram(text::both("whole cycle", "весь цикл"), (*machine)["cycle"]);
+    for (const json& phase : (*machine)["phases"]) {
+      const auto number = [&](const char* key) { return text::number(phase[key].get<double>(), 1); };
+      say(kHead, {"  " + phase["phase"].get<std::string>(), number("p50_us"), number("p99_us"),
+                  number("p999_us"), number("max_us")});
+    }
+  }
   if (measured.missed > 0)
     say(kMissed, {std::to_string(measured.missed), std::to_string(measured.late.count())});
   if (const auto other = facts.find("cyclictest"); other != facts.end())
@@ -137,14 +165,42 @@ void print_facts(const LatencyOptions& o, const WakeUp& measured, const json& fa
   (void)o;
 }
 
-int finish(const LatencyOptions& o, const WakeUp& measured, const BusTimes* bus) {
+int finish(const LatencyOptions& o, const WakeUp& measured, const BusTimes* bus,
+           const report::CycleTimes* machine = nullptr) {
   json facts = facts_of(o, measured);
   if (bus != nullptr) {
     facts["sync"] = histogram_json(bus->sync);
     facts["round_trip"] = histogram_json(bus->round_trip);
   }
+  if (machine != nullptr) facts["machine"] = phases_json(*machine);
   o.json ? static_cast<void>(print_exact(facts.dump(1))) : print_facts(o, measured, facts);
   return fit_of(measured.late.max(), static_cast<std::int64_t>(o.cycle_us * 1e3)) == Fit::no ? kAlarm : kDone;
+}
+
+int on_machine(const LatencyOptions& o) {
+  const machine::LoadResult loaded = machine::load(o.machine);
+  if (print_findings(loaded.findings) > 0) return kWrongUse;
+  if (!loaded.machine.nothing_real()) {
+    complain(kReal, {o.machine});
+    return kWrongUse;
+  }
+  const EndBySignal signals;
+  const auto cycle = measure_machine(loaded, o.seconds, o.load, [&] { return signals.ended(); });
+  if (!cycle) return kAlarm;
+  if (signals.ended()) return kStopped;
+  if (cycle->times.lateness().count() == 0) {
+    complain(kNoCycle, {});
+    return kAlarm;
+  }
+  LatencyOptions own = o;
+  own.cycle_us = static_cast<double>(loaded.machine.cycle_ns()) / 1e3;
+  own.priority = loaded.machine.realtime.priority;
+  if (!o.json)
+    for (const drivers::Notice& n : cycle->refusals) complain(*n.entry, n.arguments);
+  WakeUp measured;
+  measured.late = cycle->times.lateness();
+  measured.missed = cycle->overruns;
+  return finish(own, measured, nullptr, &cycle->times);
 }
 
 int on_bus(const LatencyOptions& o) {
@@ -177,6 +233,7 @@ int on_bus(const LatencyOptions& o) {
 }  // namespace
 
 int latency(const LatencyOptions& options) {
+  if (!options.machine.empty()) return on_machine(options);
   if (!options.bus.empty()) {
     if (options.node > 0) return on_bus(options);
     complain(kNode, {});

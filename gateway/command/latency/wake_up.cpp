@@ -8,39 +8,12 @@
 #include <thread>
 
 #include "drivers/clock.hpp"
+#include "gateway/command/latency/busy_processors.hpp"
 
 namespace servogate::gateway::command {
-namespace {
-
-/// Keeps processors and memory busy as long as it lives.
-class Load {
- public:
-  explicit Load(bool wanted) {
-    const unsigned n = wanted ? std::max(1u, std::thread::hardware_concurrency()) : 0;
-    for (unsigned i = 0; i < n; ++i)
-      threads_.emplace_back([this] {
-        std::vector<std::uint64_t> memory(std::size_t{1} << 18, 1);  // 2 MiB, beyond a cache of a core
-        for (std::size_t at = 0; !stop_.load(std::memory_order_relaxed); at = (at + 4099) % memory.size())
-          memory[at] = memory[(at * 7 + 1) % memory.size()] * 6364136223846793005u + 1;
-      });
-  }
-  ~Load() {
-    stop_ = true;
-    for (std::thread& t : threads_) t.join();
-  }
-  Load(const Load&) = delete;
-  Load& operator=(const Load&) = delete;
-
- private:
-  std::atomic<bool> stop_{false};
-  std::vector<std::thread> threads_;
-};
-
-}  // namespace
-
 WakeUp measure_wake_up(const WakeUpPlan& plan, const std::function<bool()>& ended,
                        const std::function<bool(image::Nanoseconds)>& each) {
-  const Load load(plan.load);
+  const BusyProcessors busy(plan.load);
   WakeUp out;
   std::atomic<bool> stop{false}, done{false};
   std::thread cycle([&] {

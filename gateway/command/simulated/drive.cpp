@@ -255,7 +255,7 @@ int live_in_lockstep(const DriveOptions& options, const Plan& plan, usercan::Soc
   say_left_out(options, drives);
   for (; now && !signals.ended(); now = bus.wait_grant()) {
     drives.advance_to(*now);
-    bus.done(std::max(drives.next_action_ns(), *now + 1));
+    bus.done(std::max(drives.next_action_ns(), *now + 1), usercan::LockstepWake::frames);
   }
   return kDone;
 }

@@ -15,9 +15,14 @@ inline constexpr AlarmNumber kThreadTooFast = 4104;
 inline constexpr AlarmNumber kThreadTooShort = 4105;
 inline constexpr AlarmNumber kThreadHeld = 4106;
 inline constexpr AlarmNumber kThreadNoEncoder = 4107;
+inline constexpr AlarmNumber kThreadSpindleStands = 4108;
+inline constexpr AlarmNumber kTapTooDeep = 4109;
+inline constexpr AlarmNumber kTapNoTurn = 4110;
 inline constexpr AlarmNumber kProbeNone = 4111;
 inline constexpr AlarmNumber kProbeStuck = 4112;
 inline constexpr AlarmNumber kProbeMissed = 4113;
 inline constexpr AlarmNumber kProbeInRapid = 4114;
+inline constexpr AlarmNumber kProbeNotFree = 4115;
+inline constexpr AlarmNumber kProbeNotLatched = 4116;
 
 }  // namespace servogate::channel::alarm

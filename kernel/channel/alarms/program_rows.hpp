@@ -124,6 +124,40 @@ inline constexpr image::AlarmRow kProgramRows[] = {
       "{9}: движение по углу шпинделя невозможно: у шпинделя нет датчика"},
      "Give the spindle a drive with an encoder (counts_per_rev), or tap with a floating holder.",
      "Дайте шпинделю привод с датчиком (counts_per_rev) или режьте метчиком в плавающем патроне."},
+    {alarm::kThreadSpindleStands,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"thread.spindle_stands",
+      "{9}: no motion by the angle of the spindle: it is not told to turn, or not at its speed (waited {1} "
+      "s)",
+      "{9}: движение по углу шпинделя невозможно: шпиндель не пущен или не набрал частоту (ожидание {1} с)"},
+     "Program S with M3 or M4 before the thread. If they are there, see what the spindle's enable waits for, "
+     "or why it does not reach its speed.",
+     "Задайте S с M3 или M4 до резьбы. Если они заданы, выясните, чего ждёт разрешение шпинделя или почему "
+     "он не набирает частоту."},
+    {alarm::kTapTooDeep,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"tap.too_deep",
+      "{9}: the tap would rest {1} mm beyond its depth, {2} mm allowed (tap_overshoot): it was stopped "
+      "beside "
+      "its spindle",
+      "{9}: метчик остановился бы на {1} мм за глубиной, допустимо {2} мм (tap_overshoot): ось остановлена "
+      "отдельно от шпинделя"},
+     "Look at tap and part. Find out why the spindle turns round late: its drive, its load, or an "
+     "acceleration in the machine file that it does not reach.",
+     "Осмотрите метчик и деталь. Выясните, почему шпиндель реверсируется поздно: привод, нагрузка или "
+     "ускорение в файле станка, которого он не достигает."},
+    {alarm::kTapNoTurn,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"tap.no_turn",
+      "{9}: the spindle of the tap has not turned round or stopped after {1} s ({2} s allowed)",
+      "{9}: шпиндель метчика не реверсировался и не остановился за {1} с (допустимо {2} с)"},
+     "The tap is in the hole. Turn the spindle out by hand together with the axis. Find out what kept the "
+     "spindle: its enable, its drive or its load.",
+     "Метчик в отверстии. Выведите его вручную, вращая шпиндель вместе с осью. Выясните, что задержало "
+     "шпиндель: разрешение, привод или нагрузка."},
     {alarm::kProbeNone,
      image::Reaction::stop_on_path,
      image::ResetCondition::reset,
@@ -151,6 +185,25 @@ inline constexpr image::AlarmRow kProgramRows[] = {
       "{9}: щуп коснулся чего-то на ускоренном ходу"},
      "Look whether the probe is damaged, move it free by hand, and correct the way of the program.",
      "Проверьте, не повреждён ли щуп, отведите его вручную и исправьте путь в программе."},
+    {alarm::kProbeNotFree,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"probe.not_free", "{9}: the probe is still deflected {1} mm away from where it had touched",
+      "{9}: щуп остаётся отклонённым в {1} мм от места касания"},
+     "The next touch would not be noticed. Look at the stylus, the battery, the receiver and the wiring of "
+     "the probe, and at the way on which the program leaves the part.",
+     "Следующее касание осталось бы незамеченным. Проверьте щуп, батарею, приёмник и проводку, а также путь, "
+     "которым программа отходит от детали."},
+    {alarm::kProbeNotLatched,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"probe.not_latched", "{9}: the drive of {0} has not latched the touch within {2} s",
+      "{9}: привод {0} не защёлкнул касание за {2} с"},
+     "Wire the probe to the probe input of the drive of each axis that measures, and see whether the drive "
+     "has "
+     "60B8h; or take the edge of the input instead (probe_latch).",
+     "Подключите щуп к входу щупа привода каждой измеряющей оси и проверьте, есть ли у привода 60B8h; либо "
+     "используйте фронт входа (probe_latch)."},
 };
 
 }  // namespace servogate::channel

@@ -17,7 +17,8 @@ bool passes(const program::Command& command) {
 Forecast::Forecast(Depth depth, const path::Config& config, AxisMap axes, const program::Position& start,
                    std::uint32_t own)
     : config_(config),
-      elements_(config, std::move(axes), SpindleAt::halfway),
+      axes_(std::move(axes)),
+      elements_(config, axes_, SpindleAt::halfway),
       at_(elements_.path_position(start)),
       stands_(start) {
   elements_.own(own);
@@ -26,19 +27,44 @@ Forecast::Forecast(Depth depth, const path::Config& config, AxisMap axes, const 
 }
 
 std::optional<text::Finding> Forecast::take(const program::Command& command) {
-  if (is_motion(command)) {
-    path::Element element = elements_.element(command, at_);
-    element.tag.line = command.line;
-    element.tag.file = command.file;
-    const path::Flaw flaw = add(element);
-    at_ = element.to;
-    if (flaw == path::Flaw::none) return std::nullopt;
-    begin_anew();
-    return cannot_drive(flaw);
+  switch (tap_.take(command, elements_, at_)) {
+    case TapCommands::Taken::wrong:
+      if (const program::Position* to = destination(command)) at_ = elements_.path_position(*to);
+      return tap_.flaw();
+    case TapCommands::Taken::yes:
+      return std::nullopt;
+    case TapCommands::Taken::complete:
+      return tap();
+    case TapCommands::Taken::no:
+      break;
   }
+  if (is_motion(command)) return drive(elements_.element(command, at_), command);
   if (const auto* spindle = std::get_if<program::Spindle>(&command.what)) elements_.take(*spindle);
   if (!passes(command)) rest();
   return std::nullopt;
+}
+
+std::optional<text::Finding> Forecast::drive(path::Element element, const program::Command& command) {
+  element.tag.line = command.line;
+  element.tag.file = command.file;
+  const path::Flaw flaw = add(element);
+  at_ = element.to;
+  if (flaw == path::Flaw::none) return std::nullopt;
+  begin_anew();
+  return cannot_drive(flaw);
+}
+
+std::optional<text::Finding> Forecast::tap() {
+  const std::vector<TapCommands::Leg> legs = tap_.legs();
+  tap_.clear();
+  std::optional<text::Finding> found = tap_leaves_travel(config_, axes_, at_, legs);
+  rest();
+  for (const TapCommands::Leg& leg : legs) {
+    std::optional<text::Finding> flaw = drive(leg.element, leg.command);
+    if (!found) found = std::move(flaw);
+  }
+  rest();
+  return found;
 }
 
 int Forecast::foreign_axis(const program::Command& command) {

@@ -5,6 +5,7 @@
 
 #include "firmware_if/text/finding.hpp"
 #include "kernel/channel/motion/path_elements.hpp"
+#include "kernel/channel/motion/tap_commands.hpp"
 #include "kernel/path/path_time.hpp"
 #include "kernel/path/survey.hpp"
 
@@ -38,12 +39,16 @@ class Forecast {
   }
 
  private:
+  std::optional<text::Finding> drive(path::Element element, const program::Command& command);
+  std::optional<text::Finding> tap();
   path::Flaw add(const path::Element& element);
   void rest();
   void begin_anew();
 
   path::Config config_;
+  AxisMap axes_;
   PathElements elements_;
+  TapCommands tap_;
   path::Vector at_{};
   program::Position stands_;  ///< of the axes of other processes
   std::optional<path::PathTime> time_;

@@ -228,12 +228,6 @@ text::Finding rests_inside() {
   return finding;
 }
 
-text::Finding tap_open() {
-  text::Finding finding;
-  finding.entry = &texts::kTapOpen;
-  return finding;
-}
-
 text::Finding cannot_drive(path::Flaw flaw) {
   const text::Entry& why = texts::kFlaws[static_cast<std::size_t>(flaw)];
   text::Finding finding;

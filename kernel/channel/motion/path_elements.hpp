@@ -15,10 +15,11 @@ namespace servogate::channel {
 /// How path axes lie among the machine's, and what an axis order means. The path of a process has the axes of
 /// all of them: those of the others rest on it, so that an axis may be handed over between two runs.
 struct AxisMap {
-  std::vector<int> machine;      ///< machine axis of each path axis
-  int surface_speed_axis = -1;   ///< machine axis whose position is the radius for G96; -1: none
-  double spindle_min_rpm = 0.0;  ///< to which the spindle limits what it is told
-  double spindle_max_rpm = 0.0;  ///< 0: no limit
+  std::vector<int> machine;          ///< machine axis of each path axis
+  std::vector<std::string> letters;  ///< of each path axis, for messages
+  int surface_speed_axis = -1;       ///< machine axis whose position is the radius for G96; -1: none
+  double spindle_min_rpm = 0.0;      ///< to which the spindle limits what it is told
+  double spindle_max_rpm = 0.0;      ///< 0: no limit
 };
 
 /// Which speed of the spindle a feed per revolution is reckoned with, where a cutting speed changes it along
@@ -74,8 +75,6 @@ text::Finding process_not_started(int process, const std::string& program);
 text::Finding program_not_found(int process, const std::string& program);
 /// What keeps an element with this flaw from being driven; the place is for the caller to fill in.
 text::Finding cannot_drive(path::Flaw flaw);
-/// A tap that is not followed by its way back; the place is for the caller to fill in.
-text::Finding tap_open();
 /// The path rests inside a block, see path::Planner::take_unasked_rest().
 text::Finding rests_inside();
 }  // namespace servogate::channel

@@ -6,8 +6,21 @@ namespace servogate::channel::texts {
 
 inline constexpr text::Entry kTapOpen{
     "channel.tap-open",
-    "behind a tap come the spindle reversed and the way back to where it began; here it is something else",
-    "за резьбонарезанием метчиком следуют реверс шпинделя и возврат в начальную точку; здесь — другое"};
+    "behind a tap come the spindle reversed and the way back along the same line, until it stands where it "
+    "began; here it is something else",
+    "за резьбонарезанием метчиком следуют реверс шпинделя и возврат по той же прямой, до начальной точки; "
+    "здесь — другое"};
+inline constexpr text::Entry kTapLegs{
+    "channel.tap-legs",
+    "the tap goes in and back more than {0} times: break chips less often, or leave the hole between passes",
+    "метчик входит и возвращается больше {0} раз: реже ломайте стружку или выводите метчик из отверстия"};
+inline constexpr text::Entry kTapLeavesTravel{
+    "channel.tap-leaves-travel",
+    "the tap may go {1} mm beyond its depth with its spindle (tap_overshoot): {0} would be at {2}, its "
+    "travel "
+    "ends at {3}",
+    "метчик может пройти за глубину на {1} мм вслед за шпинделем (tap_overshoot): {0} окажется в {2}, ход "
+    "кончается в {3}"};
 inline constexpr text::Entry kNoSuchProcess{
     "channel.no-such-process", "there is no process {0}: this machine has {1} ([control] processes)",
     "процесса {0} нет: у этого станка их {1} ([control] processes)"};

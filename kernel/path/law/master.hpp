@@ -10,6 +10,7 @@ namespace servogate::path {
 struct MasterReading {
   bool valid = false;              ///< an encoder gives it, counted from its zero mark
   bool ready = true;               ///< at speed: a motion may begin
+  double ordered = 1.0;            ///< revolutions/s that it is told, without sign; 0: to stand
   std::int64_t turns = 0;          ///< whole revolutions since the zero mark, + clockwise
   double part = 0.0;               ///< of a revolution, 0 - 1
   image::Nanoseconds at_ns = 0;    ///< when the encoder stood there
@@ -53,6 +54,8 @@ class MasterEstimate {
   bool begun_ = false, moves_ = false, settled_ = false, lost_ = true, fresh_ = false;
 };
 
+/// Revolutions/s: slower is rest.
+inline constexpr double kMasterStands = 0.05;
 /// 1/s: how fast a set-point settles on its master. Jerk that takes error, speed and acceleration to zero.
 inline constexpr double kMasterSettles = 60.0;
 constexpr double settling_jerk(double s, double v, double a) noexcept {

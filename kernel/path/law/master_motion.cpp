@@ -8,11 +8,10 @@
 namespace servogate::path {
 namespace {
 
-constexpr double kStands = 0.05;        // revolutions/s: slower is rest
 constexpr double kLeastShare = 0.05;    // of the speed that it was begun with
 constexpr double kUnknownPatience = 5;  // s
+constexpr double kReadyPatience = 10;   // s, besides the ramp of the spindle
 constexpr double kSettles = 0.15;       // s behind the lead-in until the window is watched
-constexpr double kSpindleHears = 1.0;   // cycles besides what a reading takes, until it has its order
 
 double seconds(image::Nanoseconds t) noexcept { return static_cast<double>(t) * 1e-9; }
 
@@ -27,6 +26,18 @@ Profile lead_in(double v, const Box& box) noexcept {
 }  // namespace
 
 bool MasterMotion::begin(const Ahead& ahead) noexcept {
+  const Span* first = ahead.span(0);
+  if (first == nullptr) return false;
+  lock_ = first->terms.feed.lock;
+  box_ = first->terms.box;
+  depth_ = 0.0;
+  if (!(taps() ? gather_legs(ahead) : gather_segments(ahead))) return false;
+  reset();
+  if (taps()) begin_leg();
+  return true;
+}
+
+bool MasterMotion::gather_segments(const Ahead& ahead) noexcept {
   count_ = 0;
   length_ = 0.0;
   double turns = 0.0;
@@ -34,10 +45,6 @@ bool MasterMotion::begin(const Ahead& ahead) noexcept {
     const Span* span = ahead.span(n);
     if (span == nullptr || !span->final || n == kMostSpans) return false;
     const Terms& terms = span->terms;
-    if (n == 0) {
-      lock_ = terms.feed.lock;
-      box_ = terms.box;
-    }
     box_.acceleration = std::min(box_.acceleration, terms.box.acceleration);
     box_.jerk = std::min(box_.jerk, terms.box.jerk);
     Segment& segment = segments_[static_cast<std::size_t>(count_++)];
@@ -60,18 +67,23 @@ bool MasterMotion::begin(const Ahead& ahead) noexcept {
     if (n + 1 < count_) g.most = std::max(g.most, segments_[static_cast<std::size_t>(n + 1)].per_turn);
     last_per_turn_ = end;
   }
-  if (lock_.kind == Lock::Kind::tap_in) {
-    const Span* out = ahead.span(1);
-    if (out == nullptr || !out->final || out->terms.feed.lock.kind != Lock::Kind::tap_out) return false;
-  }
+  return true;
+}
+
+void MasterMotion::reset() noexcept {
   state_ = {};
   phase_ = Phase::waiting;
-  clock_ = waited_s_ = locked_s_ = phase_error_ = overshoot_ = value_ = limit_ = 0.0;
+  clock_ = unknown_s_ = not_ready_s_ = locked_s_ = phase_error_ = value_ = limit_ = 0.0;
   fraction_ = -1.0;
-  settled_ = out_ = reverse_ = halt_ = false;
+  settled_ = halt_ = false;
   fault_ = MasterFault::none;
   remembered_ = 0;
-  return true;
+  leg_ = 0;
+  leg_begin_ = deepest_ = 0.0;
+  sense_ = 1.0;
+  turn_ = Turn::none;
+  turn_s_ = turn_w_ = stood_s_ = asked_rpm_ = 0.0;
+  asked_turn_ = 0;
 }
 
 /// Revolutions from the begin of a segment to `s` along it.
@@ -126,7 +138,7 @@ void MasterMotion::fail(MasterFault fault, double value, double limit) noexcept 
   value_ = value;
   limit_ = limit;
   // Its axis stops here: the spindle must, too.
-  if (lock_.kind != Lock::Kind::thread && phase_ != Phase::waiting) halt_ = true;
+  if (taps() && phase_ != Phase::waiting) halt_ = true;
   give_up();
 }
 
@@ -138,7 +150,7 @@ void MasterMotion::give_up() noexcept {
     const double sign = state_.v < 0.0 ? -1.0 : 1.0;
     MotionState from{sign * state_.s, sign * state_.v, sign * state_.a};
     profile_.start(from);
-    add_ramp(profile_, from.v, from.a, 0.0, box_);
+    add_ramp(profile_, from.v, from.a, 0.0, leaving_box(from));
     profile_.finish_at({profile_.end().s, 0.0, 0.0});
     direction_ = sign;
     clock_ = 0.0;
@@ -151,20 +163,33 @@ void MasterMotion::run_profile() noexcept {
   state_ = clock_ < profile_.duration() ? profile_.at(clock_) : profile_.end();
 }
 
-void MasterMotion::try_begin(const MasterEstimate& master, const MasterReading& reading) noexcept {
-  waited_s_ += period_;
-  if (!master.known()) {
-    if (waited_s_ > kUnknownPatience) fail(MasterFault::lost, 0.0, 0.0);
-    return;
+/// It waits for its spindle, for so long as that may take.
+bool MasterMotion::not_ready(const MasterEstimate& master, const MasterReading& reading) noexcept {
+  if (!(reading.ordered > 0.0)) {
+    fail(MasterFault::stands, 0.0, 0.0);
+    return true;
   }
+  const bool stands = master.known() && std::abs(master.at(reading.acts_ns).w) < kMasterStands;
+  if (!reading.ready || stands) {
+    fraction_ = -1.0;
+    not_ready_s_ += period_;
+    const double ramp = reading.braking > 0.0 ? reading.ordered / reading.braking : 0.0;
+    const double patience = kReadyPatience + 2.0 * ramp;
+    if (not_ready_s_ > patience) fail(MasterFault::stands, not_ready_s_, patience);
+    return true;
+  }
+  if (master.known()) return false;
+  unknown_s_ += period_;
+  if (unknown_s_ > kUnknownPatience) fail(MasterFault::lost, 0.0, 0.0);
+  return true;
+}
+
+void MasterMotion::try_begin(const MasterEstimate& master, const MasterReading& reading) noexcept {
+  if (not_ready(master, reading)) return;
   const MasterState now = master.at(reading.acts_ns);
   const double w = std::abs(now.w);
-  if (w < kStands || !reading.ready) {
-    fraction_ = -1.0;
-    return;
-  }
   direction_ = now.w < 0.0 ? -1.0 : 1.0;
-  const bool taps = lock_.kind == Lock::Kind::tap_in;
+  const bool taps = this->taps();
   if (too_fast(w, length_)) return;
   // The speed at the end of the lead-in depends on its way where the lead changes.
   const Segment& first = segments_[0];
@@ -233,7 +258,7 @@ double MasterMotion::velocity_allowed() const noexcept {
 /// The jerk that is wanted, or what of it keeps the limits in this cycle and those to come.
 double MasterMotion::within_limits(double jerk) const noexcept {
   const double most = velocity_allowed();
-  const double dt = period_, least = lock_.kind == Lock::Kind::thread ? 0.0 : -most;
+  const double dt = period_, least = taps() ? -most : 0.0;
   const auto held = [&](double j) {
     j = std::clamp(j, -box_.jerk, box_.jerk);
     return std::clamp(j, (-box_.acceleration - state_.a) / dt, (box_.acceleration - state_.a) / dt);
@@ -250,10 +275,10 @@ double MasterMotion::within_limits(double jerk) const noexcept {
 void MasterMotion::watch(const MasterEstimate& master, const MasterReading& reading) noexcept {
   if (!master.known()) return fail(MasterFault::lost, 0.0, 0.0);
   const double w = direction_ * master.at(reading.acts_ns).w;
-  const bool turns_round = reverse_ || halt_ || out_;
-  if (!turns_round && w < kLeastShare * begun_with_)
-    return fail(MasterFault::reversed, w, kLeastShare * begun_with_);
-  if (lock_.kind == Lock::Kind::thread && phase_ == Phase::locked && too_fast(w, reach())) return;
+  const bool turns_round = turn_ == Turn::turning || halt_;
+  const double least = taps() ? least_of_tap() : kLeastShare * begun_with_;
+  if (!turns_round && w < least) return fail(MasterFault::reversed, w, least);
+  if (!taps() && phase_ == Phase::locked && too_fast(w, reach())) return;
   if (!master.fresh()) return;
   const double ago = seconds(newest_ns_ - master.read_at()) / period_;
   if (ago < 0.0 || ago + 1.0 > remembered_ - 1) return;
@@ -267,27 +292,6 @@ void MasterMotion::watch(const MasterEstimate& master, const MasterReading& read
   if (locked_s_ > kSettles + ago * period_) settled_ = true;
   if (settled_ && std::abs(phase_error_) > window_)
     fail(MasterFault::window, std::abs(phase_error_), window_);
-}
-
-/// A tap reverses its spindle so that it stands at the depth, and goes where that takes it.
-void MasterMotion::tap(const MasterState& now, const MasterReading& reading) noexcept {
-  if (out_) return;
-  overshoot_ = std::max(overshoot_, state_.s - length_);
-  const double w = direction_ * now.w, per_turn = segments_[0].per_turn;
-  const double hears = seconds(reading.acts_ns - reading.at_ns) + kSpindleHears * period_;
-  const double stops = reading.braking > 0.0 ? w * (0.5 * w / reading.braking + hears)
-                                             : std::numeric_limits<double>::infinity();
-  if (!halt_ && (length_ - state_.s) / per_turn <= stops) reverse_ = true;
-  if (reverse_ && !halt_ && w < 0.0 && state_.v < 0.0) turn_back();
-}
-
-/// From here on the way out counts.
-void MasterMotion::turn_back() noexcept {
-  state_ = {length_ - state_.s, -state_.v, -state_.a};
-  whole_ = -whole_ - length_ / segments_[0].per_turn;
-  direction_ = -direction_;
-  remembered_ = 0;
-  out_ = true;
 }
 
 void MasterMotion::remember(image::Nanoseconds acts_ns) noexcept {
@@ -307,7 +311,7 @@ void MasterMotion::follow(const MasterEstimate& master, const MasterReading& rea
   const MotionState next{state_.s + dt * (state_.v + dt * (0.5 * state_.a + dt * j / 6.0)),
                          state_.v + dt * (state_.a + 0.5 * dt * j), state_.a + dt * j};
   locked_s_ += dt;
-  const bool brakes = (lock_.kind == Lock::Kind::thread || out_) && next.v > 0.0;
+  const bool brakes = (!taps() || last_leg()) && next.v > 0.0;
   if (brakes && next.s + ramp_distance(next.v, next.a, 0.0, box_) > length_) {
     Goal goal;
     goal.length = length_ - state_.s;
@@ -323,15 +327,13 @@ void MasterMotion::follow(const MasterEstimate& master, const MasterReading& rea
     return run_profile();
   }
   state_ = next;
-  if (lock_.kind == Lock::Kind::thread) return;
-  const MasterState now = master.at(reading.acts_ns);
-  tap(now, reading);
-  if (halt_ && std::abs(now.w) < kStands) give_up();
+  if (taps()) tap(master.at(reading.acts_ns), reading);
 }
 
 void MasterMotion::step(const MasterEstimate& master, const MasterReading& reading, bool wait,
                         bool leave) noexcept {
-  if (leave && (lock_.kind == Lock::Kind::thread || phase_ == Phase::waiting)) give_up();
+  braking_ = reading.braking;
+  if (leave && (!taps() || phase_ == Phase::waiting)) give_up();
   if (leave && phase_ == Phase::locked) halt_ = true;
   if (phase_ == Phase::running_in || phase_ == Phase::locked) watch(master, reading);
   switch (phase_) {

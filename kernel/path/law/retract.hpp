@@ -8,9 +8,16 @@ namespace servogate::path {
 /// still moves, inside of what its limits have left. All functions are real-time safe.
 class Retract {
  public:
-  /// From rest. `along`: the most that each axis moves for a path of 1, which has `box` until it rests. An
-  /// axis to which too little is left waits for path_rests().
-  void begin(const Config& config, const Vector& along, const Box& box) noexcept;
+  /// The path beside it, until it rests.
+  struct Path {
+    Vector along{};    ///< the most that each axis moves for a path of 1
+    Box box;           ///< speed, acceleration and jerk are at most these
+    Vector at{};       ///< where the axes are
+    double way = 0.0;  ///< mm of path to its rest
+  };
+  /// From rest. `lock` says which axes stay, and which go against the sign of Threads::retract; none leaves
+  /// its travel. An axis to which too little is left of its limits waits for path_rests().
+  void begin(const Config& config, const Lock& lock, const Path& path) noexcept;
   /// All of the limits are there now.
   void path_rests(const Config& config) noexcept;
   void step(double seconds) noexcept;
@@ -28,6 +35,7 @@ class Retract {
     Profile profile;
     double clock = 0.0;
   };
+  static double distance(const Config& config, const Lock& lock, const Path& path, int axis) noexcept;
   static void plan_way(Way& way, double distance, const AxisLimits& limits) noexcept;
   std::array<Way, kMaxAxes> ways_{};
   std::array<double, kMaxAxes> distance_{};

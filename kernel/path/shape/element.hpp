@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "firmware_if/image/process_image.hpp"
@@ -30,13 +31,25 @@ enum class Law : std::uint8_t {
   course,   ///< shape and law over one clock, acceleration carried through
 };
 
+/// One value for each axis.
+constexpr std::array<double, kMaxAxes> on_all_axes(double value) noexcept {
+  std::array<double, kMaxAxes> all{};
+  all.fill(value);
+  return all;
+}
+
 /// What a motion by the turns of the spindle does where it cannot be driven to its end.
 struct Threads {
   /// mm (degrees) by which each axis leaves the thread when its master is lost or the motion is stopped; all
-  /// 0: the path only slows down.
+  /// 0: the path only slows down. Lock says where the sign is another one.
   std::array<double, kMaxAxes> retract{};
+  bool by_infeed = false;      ///< whoever makes the elements: each leaves to where it came from (Lock)
   bool hold_retracts = false;  ///< a hold leaves the thread, otherwise the pass goes on to its end
   double window = 0.2;         ///< mm of path: further off its master it is left
+  double tap_overshoot = 3.0;  ///< mm that a tap may go beyond its depth with its spindle, > 0
+  /// Travel of each axis, machine coordinates: the way off a thread ends there at the latest.
+  std::array<double, kMaxAxes> travel_min = on_all_axes(-std::numeric_limits<double>::infinity());
+  std::array<double, kMaxAxes> travel_max = on_all_axes(std::numeric_limits<double>::infinity());
 };
 
 class Transformation;
@@ -108,14 +121,19 @@ struct Lock {
   enum class Kind : std::uint8_t {
     none,
     thread,   ///< begins at an angle of the spindle, ends at its end whatever the spindle does then
-    tap_in,   ///< a line to the depth, in which the spindle is reversed; the next element is its way out
-    tap_out,  ///< the same line back
+    tap_in,   ///< a line at whose end the spindle turns round; the next element leads back along it
+    tap_out,  ///< the last line of a tap, on which it leaves the hole
   };
   Kind kind = Kind::none;
   double per_turn = 0.0;  ///< mm of path in a revolution where the element begins, > 0
   double change = 0.0;    ///< of that in each revolution
   double start =
       0.0;  ///< revolutions from the zero mark to where the thread begins, 0 - 1; of its first element
+  double dwell = 0.0;         ///< tap_in: s that the spindle stands at its end before it turns round
+  double turn_rpm = 0.0;      ///< tap_in: speed of the spindle from there on; 0: as before
+  std::int8_t turn = 0;       ///< tap_in: how it turns from there on, + clockwise, - counter-clockwise
+  std::uint16_t stays = 0;    ///< thread: axes of the path, as bits, that do not leave it
+  std::uint16_t against = 0;  ///< thread: those that leave it against the sign of Threads::retract
   bool operator==(const Lock&) const = default;
 
   /// mm of path in a revolution, `s` behind the begin of the element. real-time safe.

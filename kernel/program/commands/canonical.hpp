@@ -62,7 +62,14 @@ struct Thread {
 struct Dwell {
   double seconds = 0.0;
 };
-enum class SpindleMode : std::uint8_t { keep, cw, ccw, stop, orient };
+enum class SpindleMode : std::uint8_t {
+  keep,
+  cw,
+  ccw,
+  stop,
+  orient,
+  turn,  ///< an oriented spindle turns on by an angle at its speed, and is held there
+};
 struct Spindle {
   std::uint8_t number = 0;
   SpindleMode mode = SpindleMode::keep;
@@ -72,6 +79,7 @@ struct Spindle {
   /// For surface speed: machine coordinate of the diameter axis at which the tool stands on the spindle's
   /// axis, that is its length along it.
   double center = 0.0;
+  double turn_deg = 0.0;  ///< of SpindleMode::turn, + clockwise
 };
 /// Tool word. `activate` true: the corrector takes effect here, else it is a preselection.
 struct Tool {
@@ -135,6 +143,12 @@ struct InPosition {
   std::uint32_t axes = 0;
 };
 
+/// Whether the override of the feed counts from here on, up to the end of the program: a tap in a
+/// compensating chuck goes at its feed.
+struct FeedOverride {
+  bool effective = true;
+};
+
 /// End of the main program (M02, M30 or its last line).
 struct End {
   bool rewind = false;
@@ -147,7 +161,7 @@ struct Command {
   int process = 0;
   std::int32_t block = -1;  ///< N number, -1: none
   std::variant<Rapid, Line, Arc, Thread, Dwell, Spindle, Tool, MFunction, HFunction, Message, WritePlace,
-               Wait, Stop, Probe, End, SpindleMark, ProcessOrder, InPosition>
+               Wait, Stop, Probe, End, SpindleMark, ProcessOrder, InPosition, FeedOverride>
       what;
 };
 

@@ -151,13 +151,14 @@ struct Fields {
   }
   void operator()(const Dwell& c) const { w.field("seconds", c.seconds); }
   void operator()(const Spindle& c) const {
-    constexpr std::string_view kModes[] = {"keep", "cw", "ccw", "stop", "orient"};
+    constexpr std::string_view kModes[] = {"keep", "cw", "ccw", "stop", "orient", "turn"};
     if (c.number != 0) w.count("number", c.number);
     w.field("mode", kModes[static_cast<int>(c.mode)]);
     w.field("speed", c.speed);
     w.field("unit", c.surface_speed ? "m/min" : "rpm");
     if (c.limit_rpm > 0.0) w.field("limit", c.limit_rpm);
     if (c.center != 0.0) w.field("center", c.center);
+    if (c.mode == SpindleMode::turn) w.field("angle", c.turn_deg);
   }
   void operator()(const Tool& c) const {
     w.count("number", c.number);
@@ -196,12 +197,14 @@ struct Fields {
     w.flag("after_motion", c.after_motion);
   }
   void operator()(const InPosition& c) const { w.windows(c); }
+  void operator()(const FeedOverride& c) const { w.flag("effective", c.effective); }
 };
 
 /// In the order of Command::what.
-constexpr std::string_view kNames[] = {"rapid", "line",  "arc", "thread",       "dwell",   "spindle",
-                                       "tool",  "m",     "h",   "message",      "write",   "wait",
-                                       "stop",  "probe", "end", "spindle_mark", "process", "in_position"};
+constexpr std::string_view kNames[] = {
+    "rapid",   "line",        "arc",          "thread", "dwell", "spindle", "tool", "m",
+    "h",       "message",     "write",        "wait",   "stop",  "probe",   "end",  "spindle_mark",
+    "process", "in_position", "feed_override"};
 static_assert(std::size(kNames) == std::variant_size_v<decltype(Command::what)>);
 
 }  // namespace

@@ -207,8 +207,8 @@ class Execution : public ValueSource {
   Capability capability_{dialect_,     machine_,      block_,        flow_,
                          state_.modes, state_.frames, state_.motion, data_.warnings};
   Output output_{data_.queue, flow_, block_, data_.process, state_};
-  Contour contour_{dialect_,       machine_,    flow_,         state_.frames,         frames_,
-                   state_.contour, data_.queue, data_.process, state_.motion.arc_feed};
+  Contour contour_{dialect_,       machine_,    flow_,         state_.frames,          frames_,
+                   state_.contour, data_.queue, data_.process, state_.motion.arc_feed, state_.motion.watch};
   Motion motion_{dialect_,      machine_, block_,      numbers_, state_.modes, state_.frames,
                  state_.motion, frames_,  capability_, output_,  contour_};
 };

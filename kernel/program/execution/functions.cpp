@@ -36,7 +36,7 @@ SpindleMode ordered(MAction action, SpindleMode now) {
 
 /// T, then the spindle, then the M functions of the class "start of motion" in the order written, then H.
 void Execution::before_motion(const BlockWords& words) {
-  if (words.tool != nullptr || words.corrector != nullptr) tool_words(words);
+  if (!words.tool_behind && (words.tool != nullptr || words.corrector != nullptr)) tool_words(words);
   const MRule* start = nullptr;
   const Word* start_word = nullptr;
   for (int i = 0; i < words.m_count; ++i) {
@@ -129,6 +129,8 @@ void Execution::spindle_word(const BlockWords& words, const MRule* start, const 
     const SpindleMode mode = ordered(start->action, state_.motion.spindle);
     if (start->action == MAction::spindle_reverse) motion_.turn_spindle(SpindleMode::stop);
     motion_.turn_spindle(mode);
+  } else if (state_.motion.spindle == SpindleMode::turn) {
+    state_.motion.speed_told = false;  // it stands where it has been turned to
   } else if (words.speed != nullptr ||
              (!state_.motion.speed_told && state_.motion.spindle != SpindleMode::stop))
     motion_.turn_spindle(state_.motion.spindle);
@@ -137,6 +139,7 @@ void Execution::spindle_word(const BlockWords& words, const MRule* start, const 
 /// Dwell, then the M functions of the class "end of motion" in the order written; what stops or ends the
 /// program last.
 void Execution::after_motion(const BlockWords& words) {
+  if (words.tool_behind) tool_words(words);
   if (words.dwell) dialect_.dwell(*this, *words.dwell_word);
   int last = -1;
   for (int i = 0; i < words.m_count; ++i) {

@@ -116,10 +116,11 @@ void Execution::gather_word(BlockWords& words, const Word& word) {
       if (code > rule.max)
         fail(Fault::out_of_range, word.value.column,
              {"M", std::to_string(code), "0", text::number(rule.max)});
-      if (const MRule* known = dialect_.find_m(code); known != nullptr && known->action == MAction::later)
+      const MRule* known = dialect_.find_m(code);
+      if (known != nullptr && known->action == MAction::later)
         fail(Fault::not_executed, word.column, {"M" + std::to_string(code)});
-      else if (known != nullptr && known->action == MAction::own)
-        return gather_own(words, word);
+      if (known != nullptr && known->action == MAction::own) return gather_own(words, word);
+      if (known != nullptr && known->action == MAction::spindle_orient) words.counts_as_motion = true;
       words.m[static_cast<std::size_t>(words.m_count)] = &word;
       words.m_code[static_cast<std::size_t>(words.m_count++)] = code;
       return;

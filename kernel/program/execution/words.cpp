@@ -65,7 +65,8 @@ void Execution::run_words() {
       motion_.move(words);
   }
   if (contour_ends) contour_.end();
-  if (words.one_shot != 0 && (words.axes > 0 || moves)) return_modes(words, before);
+  if (words.one_shot != 0 && (words.axes > 0 || moves || words.counts_as_motion)) return_modes(words, before);
+  if (words.plane_behind != Function::nothing) frames_.select_plane(words.plane_behind, false, 0);
   if (words.then != Function::nothing)
     state_.modes.*kModes[static_cast<std::size_t>(words.then)] = words.then;
   after_motion(words);

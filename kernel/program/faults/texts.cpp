@@ -191,6 +191,12 @@ constexpr text::Entry kMessages[] = {
      "профиль не конгруэнтен: инструмент радиуса {0} не входит между соседними элементами этого элемента"},
     {"P735", "profile not congruent: the tool of radius {0} does not fit into the corner before this element",
      "профиль не конгруэнтен: инструмент радиуса {0} не входит в угол перед этим элементом"},
+    {"P756",
+     "profile not congruent: the tool of radius {0} does not fit through the bottleneck: its way crosses "
+     "that of "
+     "line {1}",
+     "профиль не конгруэнтен: инструмент радиуса {0} не проходит через узкое место: его путь пересекает путь "
+     "строки {1}"},
     {"P736", "more than {0} blocks without a motion in the plane stand between two elements of a contour",
      "между двумя элементами контура стоит больше {0} кадров без перемещения в плоскости"},
     {"P737", "{0} inside of a compensated contour: end it with G40 first",

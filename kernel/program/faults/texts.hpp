@@ -130,6 +130,7 @@ enum class Fault : std::uint8_t {
   contour_inner_arc,
   contour_reversed,
   contour_no_joint,
+  contour_bottleneck,
   contour_behind,
   contour_excludes,
   contour_waits,

@@ -51,6 +51,7 @@ class Survey {
     if (const auto* m = std::get_if<MFunction>(&command.what)) function(*m);
     if (const auto* t = std::get_if<Tool>(&command.what)) tool = *t;
     if (const auto* w = std::get_if<InPosition>(&command.what)) window(*w);
+    if (const auto* o = std::get_if<FeedOverride>(&command.what)) override_effective = o->effective;
     if (std::holds_alternative<WritePlace>(command.what)) ++writes;
     return !std::holds_alternative<Probe>(command.what) &&
            !std::holds_alternative<ProcessOrder>(command.what);
@@ -60,6 +61,7 @@ class Survey {
   std::optional<MFunction> spindle_function, coolant;
   Tool tool;
   InPosition windows;
+  bool override_effective = true;
   std::vector<MFunction> passed;
   int writes = 0;
 
@@ -70,7 +72,7 @@ class Survey {
       if ((w.axes >> a & 1u) != 0) windows.window[a] = w.window[a];
   }
   void spindle(const Spindle& s) {
-    if (s.mode == SpindleMode::stop || s.mode == SpindleMode::orient) {
+    if (s.mode == SpindleMode::stop || s.mode == SpindleMode::orient || s.mode == SpindleMode::turn) {
       turning.reset();
       return;
     }
@@ -147,6 +149,7 @@ std::variant<RestartPoint, text::Finding> restart(const Interpreter& fresh, cons
   point.spindle_function = survey.spindle_function;
   point.coolant = survey.coolant;
   point.windows = survey.windows;
+  point.override_effective = survey.override_effective;
   point.tool = survey.tool.number;
   point.corrector = survey.tool.corrector;
   point.passed = std::move(survey.passed);
@@ -198,6 +201,7 @@ std::vector<Command> approach(const RestartPoint& point, const Position& stands,
     ask();
     go(point.position);
   }
+  if (!point.override_effective) add(FeedOverride{false});
   return commands;
 }
 

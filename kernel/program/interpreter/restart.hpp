@@ -37,6 +37,7 @@ struct RestartPoint {
   std::optional<MFunction> spindle_function = std::nullopt;  ///< M3 or M4, which the PLC was told with it
   std::optional<MFunction> coolant = std::nullopt;           ///< M7 or M8 (or another of `kCoolant`) in force
   InPosition windows = {};                                   ///< that the program has set
+  bool override_effective = true;                            ///< FeedOverride in force
   std::int32_t tool = 0, corrector = 0;
   std::vector<MFunction> passed =
       {};                ///< other functions that the program gave before, the last of each code

@@ -2,7 +2,9 @@
 // What a plant has besides a rigid shaft: cogging, a compliant coupling, backlash, Stribeck, noise, heat.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "tests/mock/drive/plant_rig.hpp"
@@ -192,6 +194,50 @@ TEST(PlantExtras, noise_is_in_the_measured_torque_alone_and_the_same_in_every_ru
   }
   EXPECT_NEAR(sum / kSteps, 0.0, 0.001);
   EXPECT_NEAR(std::sqrt(squares / kSteps), 0.024, 0.001);
+}
+
+TEST(PlantExtras, a_load_that_comes_and_goes_slows_a_spindle_down_for_its_time_and_again_in_each_period) {
+  PlantConfig config = frictionless();
+  config.inertia_kg_m2 = 1e-2;
+  config.dip_torque_nm = 2.0;
+  config.dip_period_s = 0.5;
+  config.dip_time_s = 0.1;
+  Plant plant(config, kStep);
+  run(plant, torque(1000), 0.3);  // up to speed, and over the first of them
+  double fastest = plant.velocity_rad_s();
+  for (int period = 0; period < 2; ++period) {
+    run(plant, torque(0), period == 0 ? 0.2 : 0.4);
+    EXPECT_NEAR(plant.velocity_rad_s(), fastest, 0.2) << "nothing slows it down between two of them";
+    run(plant, torque(0), 0.1);
+    EXPECT_NEAR(plant.velocity_rad_s(), fastest - 20.0, 0.2) << "2 N m on 0.01 kg m2 for 0.1 s";
+    fastest = plant.velocity_rad_s();
+  }
+}
+
+TEST(PlantExtras, a_load_that_comes_and_goes_never_turns_a_shaft_back) {
+  PlantConfig config = frictionless();
+  config.dip_torque_nm = 5.0;
+  config.dip_period_s = config.dip_time_s = 1.0;
+  Plant plant(config, kStep);
+  run(plant, torque(1000), 0.5);
+  EXPECT_EQ(plant.velocity_rad_s(), 0.0) << "2.4 N m do not move it";
+}
+
+TEST(PlantExtras, an_encoder_with_noise_is_off_by_what_it_may_be_and_no_more_the_same_in_every_run) {
+  PlantConfig config = frictionless();
+  config.encoder_noise_counts = 3.0;
+  Plant plant(config, kStep), again(config, kStep);
+  std::int64_t low = 0, high = 0;
+  for (int n = 0; n < 4000; ++n) {
+    plant.step(torque(100));
+    again.step(torque(100));
+    const std::int64_t off = plant.state().position - plant.counts();
+    EXPECT_EQ(plant.state().position, again.state().position);
+    low = std::min(low, off);
+    high = std::max(high, off);
+  }
+  EXPECT_EQ(low, -3);
+  EXPECT_EQ(high, 3);
 }
 
 }  // namespace

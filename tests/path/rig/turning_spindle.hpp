@@ -15,6 +15,7 @@ namespace servogate::path::test {
 /// that come and go, read through rounding, noise and a bus that is late.
 struct TurningSpindle {
   double wanted = 10.0;     ///< revolutions/s
+  double ordered = 10.0;    ///< what it is said to be told
   double motor = 40.0;      ///< the most that its motor accelerates it, revolutions/s2
   double stiffness = 40.0;  ///< 1/s: how it goes back to its speed
   double counts = 4096.0;
@@ -58,6 +59,7 @@ struct TurningSpindle {
     r.at_ns = cycle * period_ns() - std::llround(dead_s * 1e9);
     r.acts_ns = (cycle + 1) * period_ns();
     r.braking = motor;
+    r.ordered = ordered;
     return r;
   }
   MasterQuality quality() const {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/canopen/master/events/bus_event.hpp"
 
-#include <cstdio>
 #include <vector>
 
 #include "firmware_if/canopen/402/drive_profile.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/402/statusword.hpp"
 #include "firmware_if/canopen/master/pdo/pdo_watch.hpp"
+#include "firmware_if/text/hex.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -97,11 +97,7 @@ constexpr Entry kWaiver{"can-waiver", " (of a device without it: {0})", " (дл�
 constexpr Entry kBadProtocol{"can-bad-protocol", "{0}: the answer is against the SDO protocol, {3} ({1})",
                              "{0}: ответ нарушает протокол SDO, {3} ({1})"};
 
-std::string hex(std::uint64_t value, int digits) {
-  char buffer[24];
-  std::snprintf(buffer, sizeof buffer, "%0*llXh", digits, static_cast<unsigned long long>(value));
-  return buffer;
-}
+std::string hex(std::uint64_t value, int digits) { return text::hex_number(value, digits) + "h"; }
 
 std::string fill(const Entry& entry, const std::vector<std::string>& arguments, Language language) {
   return text::render(entry, arguments, language);
@@ -158,14 +154,7 @@ std::string waiver_words(const BootReport& report, Language language) {
 }
 
 std::string bytes_words(const std::uint8_t* bytes, std::size_t count) {
-  std::string words;
-  for (std::size_t i = 0; i < count; ++i) {
-    char buffer[4];
-    std::snprintf(buffer, sizeof buffer, "%02X", bytes[i]);
-    if (i) words += ' ';
-    words += buffer;
-  }
-  return words;
+  return text::hex_bytes({bytes, count}, " ");
 }
 
 std::string nmt_state_words(std::int64_t state) {

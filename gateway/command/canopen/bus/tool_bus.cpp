@@ -67,7 +67,7 @@ image::Nanoseconds ToolBus::now() const {
 /// Until something comes, or a part of the time.
 void ToolBus::pause(image::Nanoseconds until) {
   if (transport_.lockstep != nullptr) {
-    transport_.lockstep->done(until);
+    transport_.lockstep->done(until, usercan::LockstepWake::frames);
     time_ended_ = !transport_.lockstep->wait_grant();
     return;
   }
@@ -80,7 +80,11 @@ void ToolBus::pause(image::Nanoseconds until) {
 
 bool ToolBus::wait_until(image::Nanoseconds t) {
   if (transport_.lockstep != nullptr) {
-    while (now() < t && !gone()) pause(t);
+    // What comes meanwhile is heard then.
+    while (now() < t && !gone()) {
+      transport_.lockstep->done(t, usercan::LockstepWake::wish);
+      time_ended_ = !transport_.lockstep->wait_grant();
+    }
   } else {
     const timespec until{t / image::kSecond, t % image::kSecond};
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {

@@ -268,13 +268,23 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
   c.path.reserve = m.control.path_reserve / 100.0;
   c.path.threads.window = m.control.thread_window;
   c.path.threads.hold_retracts = m.control.thread_hold_retracts;
+  c.path.threads.by_infeed = m.control.thread_retract_side == machine::ThreadSide::infeed;
+  c.path.threads.tap_overshoot = m.control.tap_overshoot;
   c.probe = switch_place(m, m.control.probe);
+  if (m.control.probe_latch != machine::ProbeLatch::edge)
+    c.probe_latch = m.control.probe_latch == machine::ProbeLatch::drive_1 ? image::LatchSource::probe_1
+                                                                          : image::LatchSource::probe_2;
   c.path.axis_count = std::min<int>(static_cast<int>(m.program_axes()), path::kMaxAxes);
   for (int i = 0; i < c.path.axis_count; ++i) {
     const machine::AxisConfig& a = m.axes[static_cast<std::size_t>(i)];
     c.axes.machine.push_back(i);
     c.path.limits[static_cast<std::size_t>(i)] = {a.max_velocity, a.max_acceleration, a.max_jerk};
+    c.axes.letters.push_back(a.letter);
     c.path.threads.retract[static_cast<std::size_t>(i)] = a.thread_retract;
+    if (!a.endless()) {
+      c.path.threads.travel_min[static_cast<std::size_t>(i)] = a.travel_min;
+      c.path.threads.travel_max[static_cast<std::size_t>(i)] = a.travel_max;
+    }
     c.path.rotary[static_cast<std::size_t>(i)] = a.type == machine::AxisType::rotary;
     if (a.diameter && (c.axes.surface_speed_axis < 0 || a.process == index + 1))
       c.axes.surface_speed_axis = i;

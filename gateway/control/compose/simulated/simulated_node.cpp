@@ -36,6 +36,10 @@ mock::PlantConfig plant_of(const machine::DeviceConfig* device, const machine::S
     if (extra->friction_coulomb > 0.0) p.coulomb_friction_nm = extra->friction_coulomb;
     if (extra->friction_viscous > 0.0) p.viscous_friction_nm_s = extra->friction_viscous;
     if (extra->max_torque > 0.0) p.peak_torque_nm = extra->max_torque;
+    p.dip_torque_nm = extra->dip_torque;
+    p.dip_period_s = extra->dip_period;
+    p.dip_time_s = extra->dip_time;
+    p.encoder_noise_counts = extra->encoder_noise;
     if (axis != nullptr) {
       const double direction = axis->direction == machine::Direction::plus ? 1.0 : -1.0;
       p.load_torque_nm = extra->gravity_torque * direction;
@@ -79,6 +83,24 @@ void put_maps(const machine::DeviceConfig& device, mock::SimulatedDriveConfig& d
       for (const machine::PdoObject& o : pdo.objects) map.mapping.add({o.index, o.subindex, o.bits});
       drive.maps.push_back(map);
     }
+}
+
+/// The probe on an input of the drive, where its axis takes it to the part.
+void put_probe(const machine::MachineConfig& m, const machine::AxisConfig& axis,
+               mock::SimulatedDriveConfig& drive) {
+  if (m.control.probe_latch == machine::ProbeLatch::edge) return;
+  const double counts = static_cast<double>(drive.plant.counts_per_rev) / units_per_revolution(axis);
+  for (const machine::SimulatedSwitch& s : m.simulation.switches) {
+    if (s.point != m.control.probe || s.axis != axis.letter) continue;
+    mock::DriveSwitch input;
+    input.input = m.control.probe_latch == machine::ProbeLatch::drive_1 ? mock::DriveSwitch::Input::probe_1
+                                                                        : mock::DriveSwitch::Input::probe_2;
+    const bool falls = counts < 0.0;
+    const double from = falls ? s.to : s.from, to = falls ? s.from : s.to;
+    if (std::isfinite(from)) input.from = static_cast<std::int64_t>(std::ceil(from * counts));
+    if (std::isfinite(to)) input.to = static_cast<std::int64_t>(std::floor(to * counts));
+    drive.switches.push_back(input);
+  }
 }
 
 template <class Config>
@@ -159,6 +181,7 @@ mock::SimulatedDriveConfig simulated_node(const machine::LoadResult& loaded, con
   if (!node.program.empty() || node.program_version >= 0) drive.program_memory = std::size_t{1} << 20;
   if (extra != nullptr) drive.absolute_encoder = extra->absolute_encoder;
   drive.plant = plant_of(device, extra, axis, spindle);
+  if (axis != nullptr) put_probe(m, *axis, drive);
   return drive;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/control/server/protocol/reply_json.hpp"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/text/hex.hpp"
 #include "gateway/control/server/protocol/status_json.hpp"
 #include "machine/consequences.hpp"
 
@@ -12,16 +12,6 @@ namespace servogate::gateway {
 namespace {
 
 using nlohmann::json;
-
-std::string hex(const std::vector<std::uint8_t>& bytes) {
-  std::string text;
-  char two[3];
-  for (const std::uint8_t b : bytes) {
-    std::snprintf(two, sizeof two, "%02X", b);
-    text += two;
-  }
-  return text;
-}
 
 json json_of(const std::vector<text::Finding>& findings) {
   return json::parse(machine::to_json(findings), nullptr, false);
@@ -126,7 +116,7 @@ void write(json& answer, const ExportedTable& table) { answer["content"] = table
 void write(json& answer, const Begun& begun) { answer["asked_s"] = begun.asked_s; }
 void write(json& answer, const FunctionsBegun&) { answer["beside"] = true; }
 void write(json& answer, const ObjectRead& object) {
-  answer.update({{"status", object.status}, {"abort", object.abort}, {"data", hex(object.data)}});
+  answer.update({{"status", object.status}, {"abort", object.abort}, {"data", text::hex_bytes(object.data)}});
 }
 void write(json& answer, const PlcLoaded& loaded) {
   answer["findings"] = json_of(loaded.findings);

@@ -88,6 +88,9 @@ json json_of(const ProcessReport& p) {
           {"override_pct", measure(p.status.override_ratio * 100.0)},
           {"retraced_mm", p.status.retraced ? json(measure(p.status.retraced_mm)) : json()},
           {"retracing", p.status.retracing},
+          {"holds_later", p.status.holds_later},
+          {"off_spindle_mm", p.status.by_spindle ? json(measure(p.status.off_spindle_mm)) : json()},
+          {"tap_overshoot_mm", measure(p.status.tap_overshoot_mm)},
           {"tool", p.status.tool}};
 }
 
@@ -128,6 +131,7 @@ json json_of(const SpindleReport& r) {
           {"running", r.spindle.running},
           {"command_rpm", measure(r.spindle.command_rpm)},
           {"actual_rpm", measure(r.spindle.actual_rpm)},
+          {"angle_deg", measure(r.spindle.angle_deg)},
           {"at_speed", r.spindle.at_speed},
           {"rests", r.rests ? json(*r.rests) : json()},
           {"gear", !r.gears ? json() : json(r.gear)},

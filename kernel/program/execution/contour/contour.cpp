@@ -88,7 +88,24 @@ bool Contour::corner_ahead() const {
 
 template <typename What>
 void Contour::emit(const Place& place, What&& what) {
-  queue_.commands.push_back(Command{place.line, place.file, process_, place.block, std::forward<What>(what)});
+  put(Command{place.line, place.file, process_, place.block, std::forward<What>(what)});
+}
+
+/// What is watched keeps its order with all that stands between.
+void Contour::put(Command command) {
+  if (!watch_.on || state_.mode == ContourState::Mode::off) {
+    end_watch();
+    queue_.commands.push_back(std::move(command));
+    return;
+  }
+  WatchedCommand kept;
+  kept.command = std::move(command);
+  state_.watched.push_back(std::move(kept));
+}
+
+void Contour::end_watch() {
+  for (WatchedCommand& kept : std::exchange(state_.watched, {}))
+    queue_.commands.push_back(std::move(kept.command));
 }
 
 Position Contour::position(const Position& programmed) const {
@@ -125,6 +142,7 @@ void Contour::take(ContourElement e) {
     return;
   }
   e.left = state_.mode == ContourState::Mode::on ? state_.left : 0.0;
+  e.compensated = state_.mode == ContourState::Mode::on;
   if (flat && (state_.engaged() || !e.in_plane)) {
     if (state_.behind.size() == kMostBehind)
       fail_at(Fault::contour_behind, e.place, {std::to_string(kMostBehind)});
@@ -271,6 +289,62 @@ void Contour::pass(const ContourElement& first, const ContourElement& second, bo
   hold(second, joint.begin);
 }
 
+namespace {
+
+enum class On : std::uint8_t { no, end, inside };
+
+On where(const WatchedCommand& way, Point place) {
+  constexpr double kEnd = 1e-3;  // mm
+  if (distance(place, way.from) < kEnd || distance(place, way.to) < kEnd) return On::end;
+  if (way.sweep_deg == 0.0) {
+    const Point all = plus(way.to, way.from, -1.0);
+    const double share = dot(plus(place, way.from, -1.0), all) / dot(all, all);
+    return share > 0.0 && share < 1.0 ? On::inside : On::no;
+  }
+  double angle = ahead(way.way.centre, way.from, place);
+  if (angle * way.sweep_deg < 0.0) angle += std::copysign(360.0, way.sweep_deg);
+  return std::abs(angle) < std::abs(way.sweep_deg) ? On::inside : On::no;
+}
+
+/// Ends that touch one another do not count: a closed contour has them.
+bool cross_at(const WatchedCommand& one, const WatchedCommand& other, Point place) {
+  const On a = where(one, place), b = where(other, place);
+  return a != On::no && b != On::no && (a == On::inside || b == On::inside);
+}
+
+}  // namespace
+
+/// The way of the tool's centre that has just been put must not cross one that is still kept back, the one
+/// right before it apart: the tool would cut into the other side of a bottleneck.
+void Contour::watch(const ContourElement& e, Point end, double sweep_deg) {
+  if (state_.watched.empty() || !e.compensated || same(end, state_.from)) return;
+  WatchedCommand& next = state_.watched.back();
+  next.element = true;
+  next.from = state_.from;
+  next.to = end;
+  next.sweep_deg = sweep_deg;
+  next.way = sweep_deg == 0.0
+                 ? line_through(next.from, end)
+                 : circle_about(e.centre, std::copysign(distance(next.from, e.centre), sweep_deg));
+  int count = 0;
+  for (const WatchedCommand& way : state_.watched) count += way.element ? 1 : 0;
+  int behind = count - 2;
+  for (const WatchedCommand& way : state_.watched) {
+    if (!way.element || behind-- <= 0) continue;
+    const AtMostTwo<Point> meeting = common_points(way.way, next.way);
+    for (int i = 0; i < meeting.count; ++i)
+      if (cross_at(way, next, meeting[i]))
+        fail_at(Fault::contour_bottleneck, e.place,
+                {millimetres(std::abs(state_.left)), std::to_string(way.command.line)});
+  }
+  auto first = state_.watched.begin();
+  for (; count > watch_.elements; ++first) {
+    count -= first->element ? 1 : 0;
+    queue_.commands.push_back(std::move(first->command));
+  }
+  state_.watched.erase(state_.watched.begin(), first);
+}
+
 void Contour::give(const ContourElement& element, Point end) {
   Position to = element.to;
   to[at(at_.axis1)] = end.x;
@@ -289,6 +363,7 @@ void Contour::give_line(const ContourElement& e, Point end, const Position& to) 
   if (same(end, state_.from) && to == state_.last) return;
   if (at_.zones_active) frames_.check_zones(state_.last, to, e.place.column);
   e.rapid ? emit(e.place, Rapid{to}) : emit(e.place, Line{to, e.feed, e.corner});
+  watch(e, end, 0.0);
 }
 
 /// Way of the axes across the plane to `to`, mm.
@@ -325,6 +400,7 @@ void Contour::give_arc(const ContourElement& e, Point end, const Position& to) {
   arc.corner = e.corner;
   if (at_.zones_active) frames_.check_zones(state_.last, arc, e.place.column);
   emit(e.place, std::move(arc));
+  watch(e, end, sweep);
 }
 
 void Contour::check(const ContourElement& element, int axis, double value) const {
@@ -340,7 +416,7 @@ void Contour::check(const ContourElement& element, int axis, double value) const
 void Contour::release(Point where) {
   for (auto& item : std::exchange(state_.behind, {})) {
     if (auto* command = std::get_if<Command>(&item)) {
-      queue_.commands.push_back(std::move(*command));
+      put(std::move(*command));
       continue;
     }
     const auto& e = std::get<ContourElement>(item);
@@ -356,7 +432,7 @@ void Contour::follow(Command command) {
   if (state_.held)
     state_.behind.emplace_back(std::move(command));
   else
-    queue_.commands.push_back(std::move(command));
+    put(std::move(command));
 }
 
 void Contour::flush() {
@@ -385,12 +461,14 @@ void Contour::close(ContourElement first) {
 
 void Contour::end() {
   flush();
+  end_watch();
   state_.mode = ContourState::Mode::off;
   state_.before.reset();
 }
 
 void Contour::settle() {
   if (state_.engaged()) flush();
+  end_watch();
   if (state_.shifted()) {
     at_.machine = position(at_.machine);
     frames_.changed();
@@ -401,6 +479,12 @@ void Contour::settle() {
 void Contour::rescue(const ContourState& before) {
   state_ = before;
   state_.corner = CornerWord{};
+  if (!state_.watched.empty()) {  // the bottleneck may begin there
+    state_.watched.clear();
+    state_.held.reset();
+    state_.behind.clear();
+    return;
+  }
   try {
     flush();
   } catch (const ProgramError&) {

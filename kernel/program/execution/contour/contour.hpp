@@ -14,7 +14,7 @@ class Contour {
  public:
   Contour(const Dialect& dialect, const MachineModel& machine, const Flow& flow, FramesState& at,
           Frames& frames, ContourState& state, CommandQueue& queue, const int& process,
-          const ArcFeed& arc_feed)
+          const ArcFeed& arc_feed, const ContourWatch& watch)
       : dialect_(dialect),
         machine_(machine),
         flow_(flow),
@@ -23,7 +23,8 @@ class Contour {
         state_(state),
         queue_(queue),
         process_(process),
-        arc_feed_(arc_feed) {}
+        arc_feed_(arc_feed),
+        watch_(watch) {}
 
   /// Nothing is kept back, and nothing has to be: a motion can be given as it is.
   bool idle() const {
@@ -86,6 +87,9 @@ class Contour {
   template <typename What>
   void emit(const Place& place, What&& what);
   void check(const ContourElement& element, int axis, double value) const;
+  void put(Command command);
+  void watch(const ContourElement& element, Point end, double sweep_deg);
+  void end_watch();
 
   const Dialect& dialect_;
   const MachineModel& machine_;
@@ -96,6 +100,7 @@ class Contour {
   CommandQueue& queue_;
   const int& process_;
   const ArcFeed& arc_feed_;
+  const ContourWatch& watch_;
 };
 
 }  // namespace servogate::program

@@ -29,6 +29,7 @@ struct ContourElement {
   double sweep_deg = 0.0;
   Position to{};      ///< of all axes, as programmed
   double left = 0.0;  ///< of the tool's centre, mm, + left of the element
+  bool compensated = false;
   Feed feed;
   ArcFeed feed_of = ArcFeed::tool_centre;
   CornerRule corner;
@@ -41,6 +42,22 @@ struct CornerWord {
   Kind kind = Kind::none;
   double value = 0.0;  ///< mm
   Place place;
+};
+
+/// Whether ways of the tool's centre that cross one another are looked for, and over how many elements: so
+/// many are kept back.
+struct ContourWatch {
+  bool on = false;
+  int elements = 4;
+};
+
+/// A command kept back while it is watched, and what of the contour it is.
+struct WatchedCommand {
+  Command command;
+  bool element = false;
+  Directed way;
+  Point from, to;
+  double sweep_deg = 0.0;  ///< 0: a line
 };
 
 /// The contour between the programmed path and the commands: it keeps one element back until the next one
@@ -58,6 +75,7 @@ struct ContourState {
   CornerWord coming;  ///< of the block that is executed: stands behind its element
   Point shift;        ///< of the tool's centre from the programmed point where nothing is held
   Position last{};    ///< end of the last command given while engaged
+  std::vector<WatchedCommand> watched;
 
   bool engaged() const noexcept { return mode != Mode::off || held.has_value(); }
   bool shifted() const noexcept { return shift.x != 0.0 || shift.y != 0.0; }

@@ -106,27 +106,33 @@ void Flow::enter(FlowState::Call call, std::size_t file, std::uint32_t line, int
   state_.line = line;
 }
 
-void Flow::call(std::string_view name, int times, int column) {
+int Flow::open(std::string_view name) {
   const auto known = std::find_if(files_.sources.begin() + 1, files_.sources.end(),
                                   [&](const auto& s) { return s->name() == name; });
-  const auto index = static_cast<std::size_t>(known - files_.sources.begin());
-  if (static_cast<int>(state_.calls.size()) < dialect_.max_call_depth && known == files_.sources.end()) {
-    auto loaded = files_.loader ? files_.loader(name) : std::nullopt;
-    if (!loaded) fail(Fault::program_missing, column, {std::string(name)});
-    files_.sources.push_back(std::make_shared<const Source>(
-        *files_.language, std::string(name), std::move(loaded->text), std::move(loaded->path)));
-    files_.names.emplace_back(name);
-  }
-  FlowState::Call entered;
-  entered.left = times;
-  enter(std::move(entered), index, 0, column);
+  const auto index = static_cast<int>(known - files_.sources.begin());
+  if (known != files_.sources.end()) return index;
+  auto loaded = files_.loader ? files_.loader(name) : std::nullopt;
+  if (!loaded) return -1;
+  files_.sources.push_back(std::make_shared<const Source>(*files_.language, std::string(name),
+                                                          std::move(loaded->text), std::move(loaded->path)));
+  files_.names.emplace_back(name);
+  return index;
 }
 
-void Flow::call(std::uint32_t line, int times, int column, std::vector<double> arguments) {
+void Flow::call(std::string_view name, int times, int column) {
+  const bool possible = static_cast<int>(state_.calls.size()) < dialect_.max_call_depth;
+  const int file = possible ? open(name) : 0;
+  if (file < 0) fail(Fault::program_missing, column, {std::string(name)});
+  FlowState::Call entered;
+  entered.left = times;
+  enter(std::move(entered), static_cast<std::size_t>(file), 0, column);
+}
+
+void Flow::call(std::uint32_t line, int times, int column, std::vector<double> arguments, int file) {
   FlowState::Call entered;
   entered.left = times;
   entered.arguments = std::move(arguments);
-  enter(std::move(entered), static_cast<std::size_t>(state_.file), line, column);
+  enter(std::move(entered), static_cast<std::size_t>(file < 0 ? state_.file : file), line, column);
 }
 
 void Flow::run_part(std::uint32_t first, std::uint32_t last) {

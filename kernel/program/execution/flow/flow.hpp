@@ -48,8 +48,12 @@ class Flow {
   void end_repeat(int column);
   /// Another program, so often.
   void call(std::string_view name, int times, int column);
-  /// A subprogram of this file that begins at a line; `arguments` are what it can ask for by number.
-  void call(std::uint32_t line, int times, int column, std::vector<double> arguments = {});
+  /// A subprogram of this file, or of another one, that begins at a line; `arguments` are what it can ask for
+  /// by number.
+  void call(std::uint32_t line, int times, int column, std::vector<double> arguments = {}, int file = -1);
+  /// Number of a file that the loader knows by its name, which is read where it has not been; -1: there is
+  /// none.
+  int open(std::string_view name);
   /// Back from the subprogram; false: none has been called.
   bool leave_subprogram();
   /// Argument of the innermost call; 0 where it is missing.

@@ -391,6 +391,16 @@ void Motion::turn_spindle(SpindleMode mode, double share) {
   state_.speed_told = true;
 }
 
+void Motion::turn_spindle_by(double degrees) {
+  end_profile();
+  state_.spindle = SpindleMode::turn;
+  Spindle spindle;
+  spindle.mode = SpindleMode::turn;
+  spindle.speed = modes_.speed;
+  spindle.turn_deg = degrees;
+  output_.emit(spindle);
+}
+
 void Motion::dwell(double seconds) {
   end_profile();
   output_.emit(Dwell{seconds});

@@ -63,6 +63,8 @@ class Motion {
   void thread(const Position& programmed, double lead, double start_angle_deg);
   /// With a share of the speed in force.
   void turn_spindle(SpindleMode mode, double share = 1.0);
+  /// An oriented spindle, on by an angle at the speed in force.
+  void turn_spindle_by(double degrees);
   /// F, which stays in force where it is no matter of its block.
   void store_feed(const BlockWords& words);
   /// Ends a continuous profile: what follows is no feed motion.

@@ -12,8 +12,11 @@ namespace servogate::program {
 struct BlockWords {
   const Block* block = nullptr;
   bool dwell = false, exact_once = false, machine_zero = false;
-  std::uint64_t one_shot = 0;         ///< bit of each Function that holds for this block only
-  Function then = Function::nothing;  ///< mode in force behind this block
+  bool counts_as_motion = false;              ///< modes of one block hold for it, though no axis is named
+  bool tool_behind = false;                   ///< T acts behind the motion
+  Function plane_behind = Function::nothing;  ///< plane that comes back behind the motion
+  std::uint64_t one_shot = 0;                 ///< bit of each Function that holds for this block only
+  Function then = Function::nothing;          ///< mode in force behind this block
   void (*instead)(Execution&, const BlockWords&) = nullptr;  ///< takes the place of the motion ...
   const Word* instead_word = nullptr;                        ///< ... and this word asks for it
   int cycle = 0;                                             ///< number of a G word that defines a cycle

@@ -31,6 +31,7 @@ struct Modes {
   Function profile = Function::profile_off;
   double speed = 0.0;    ///< S in rpm or, if `cutting`, m/min
   bool cutting = false;  ///< what `speed` is, G96 or G97 of the block that set it
+  bool override_effective = true;
 };
 
 /// Where the program stands, and what it has to come back to.
@@ -140,6 +141,7 @@ struct MotionState {
   double allowance = 0.0;      ///< mm
   bool dry_run = false;        ///< feed motions at rapid speed
   ArcFeed arc_feed = ArcFeed::tool_centre;
+  ContourWatch watch;
   bool profile_open = false;  ///< inside of a running chain of feed blocks without a stop
   Cycle cycle;
 };

@@ -38,9 +38,8 @@ class Arguments {
   double positive(int n, double otherwise, bool above_zero = false) const {
     const double value = number(n, otherwise);
     if (value > 0.0 || (value == 0.0 && !above_zero)) return value;
-    fail(Wrong::argument_range, word_.column,
-         {name(), std::to_string(n), text::number(value),
-          above_zero ? text::both("above 0", "больше 0") : text::both("0 or more", "не меньше 0")});
+    fail(above_zero ? Wrong::argument_range : Wrong::argument_negative, word_.column,
+         {name(), std::to_string(n), text::number(value)});
   }
   std::string name() const { return "G" + text::number(word_.value.number); }
   int column() const noexcept { return word_.column; }

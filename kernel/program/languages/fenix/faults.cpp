@@ -24,15 +24,25 @@ constexpr text::Entry kMessages[] = {
     {"P768", "G96: a least speed of {0} rpm is not kept by this version; leave it out",
      "G96: наименьшую частоту {0} об/мин эта версия не выдерживает; опустите её"},
     {"P769", "{0}: the argument P{1} is missing", "{0}: нет аргумента P{1}"},
-    {"P770", "{0}: P{1} is {2}; it is {3}", "{0}: P{1} равен {2}; он {3}"},
+    {"P770", "{0}: P{1} is {2}; it is above 0", "{0}: P{1} равен {2}; он больше 0"},
     {"P771", "{0} has {1} arguments at most", "{0}: аргументов не больше {1}"},
     {"P772", "{0}: the step of {1} does not lead to the end", "{0}: шаг {1} не ведёт к концу"},
     {"P773", "{0}: more than {1} passes", "{0}: больше {1} проходов"},
     {"P774", "{0} needs {1}", "{0} требует {1}"},
     {"P775", "{0} has no contour: give one by G852 before it",
      "{0}: контура нет; задайте его перед этим функцией G852"},
+    {"P776", "{0}: P{1} is {2}; it is 0 or more", "{0}: P{1} равен {2}; он не меньше 0"},
+    {"P777", "{0}: P{1} is {2}; it is {3}", "{0}: P{1} равен {2}; он {3}"},
+    {"P778", "{0}: under the angle P{1} of {2} degrees the side never reaches its end",
+     "{0}: под углом P{1} в {2} градусов сторона не приходит к концу"},
+    {"P779", "{0}: P{1} is {2} degrees; it is from {3} to {4}",
+     "{0}: P{1} равен {2} градусов; он от {3} до {4}"},
+    {"P780", "{0} turns a spindle that stands oriented: write M19 in a block before it",
+     "{0} поворачивает ориентированный шпиндель: задайте M19 в кадре перед ним"},
+    {"P781", "{0}: the speed of the turn is missing: write S in rpm",
+     "{0}: нет скорости поворота: задайте S в об/мин"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::contour_missing) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::spindle_speed) + 1);
 
 }  // namespace
 

@@ -27,6 +27,12 @@ enum class Wrong {
   passes,
   cycle_axis,
   contour_missing,
+  argument_negative,
+  argument_choice,
+  argument_slope,
+  argument_angle,
+  spindle_free,
+  spindle_speed,
 };
 
 std::span<const text::Entry> messages();

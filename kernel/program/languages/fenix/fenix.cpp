@@ -16,8 +16,8 @@ constexpr auto rules() {
   add({.number = 3, .group = '1', .function = Function::arc_cw, .then = Function::line, .take = take_arc});
   add({.number = 4, .group = '1', .function = Function::own, .motion = dwell});
   add({.number = 9, .group = '2', .function = Function::exact_once});
-  add({.number = 15, .group = '1', .function = Function::later});
-  add({.number = 30, .group = '1', .function = Function::own, .motion = home});
+  add({.number = 15, .group = '1', .function = Function::own, .motion = turn_spindle, .take = as_motion});
+  add({.number = 30, .group = '1', .function = Function::own, .motion = home, .take = as_motion});
   add({.number = 31, .group = '1', .function = Function::own, .motion = thread_passes});
   add({.number = 32, .group = '1', .function = Function::own, .motion = thread_once});
   for (const std::uint16_t cycle : {70, 71, 72, 73, 74, 75, 77, 78})
@@ -106,7 +106,7 @@ constexpr MRule kM[] = {
 enum class Kind { free, motion, dwell, exact, home, thread, turning, hole, mode, feed_minute, cutting };
 
 Kind kind_of(int g) {
-  if (g <= 3) return Kind::motion;
+  if (g <= 3 || g == 15) return Kind::motion;
   if (g == 4) return Kind::dwell;
   if (g == 9) return Kind::exact;
   if (g == 30) return Kind::home;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string_view>
+
 #include "kernel/program/cycles/boring.hpp"
 #include "kernel/program/reading/dialect.hpp"
 
@@ -18,6 +20,8 @@ inline constexpr int kLastR = 100;
 inline constexpr int kFirstLetter = 200;
 /// What Source knows the cycle @n by; the subprogram Ln is n.
 inline constexpr int kFirstCycle = 10'000;
+/// File of the cycles that all programs of its folder can call (specification 17).
+inline constexpr std::string_view kCycleFile = "cycles";
 
 // statements.cpp; source: specification 2, 4, 5, 17
 extern const WordRule kAssignR, kAssignVariable, kJump, kCall, kRepeat, kCycleHeader, kCycleEnd;
@@ -62,6 +66,10 @@ void clearance(Execution& run, double value, int index, int column);
 void deviation(Execution& run, double value, int index, int column);
 /// G30
 void home(Execution& run, const BlockWords& words);
+/// G15
+void turn_spindle(Execution& run, const BlockWords& words);
+/// Modes of the block hold for it alone, as with a motion (specification 3).
+void as_motion(Execution& run, BlockWords& words, const Word& word);
 
 // turning.cpp, holes.cpp, profiles.cpp, threads.cpp; source: specification 13, 17 to 21
 void turning(Execution& run, const BlockWords& words);

@@ -95,4 +95,25 @@ void home(Execution& run, const BlockWords& words) {
   run.motion().rapid_to(to);
 }
 
+void as_motion(Execution&, BlockWords& words, const Word&) { words.counts_as_motion = true; }
+
+/// By an angle with its sign, + clockwise, at S; the spindle stands oriented before (specification 16).
+void turn_spindle(Execution& run, const BlockWords& words) {
+  constexpr double kMost = 3'600'000.0;  // degrees
+  const Arguments arguments(run, words);
+  run.refuse_all_but(words, {});
+  arguments.at_most(1);
+  const double degrees = arguments.required(0);
+  const State& state = run.state();
+  if (std::abs(degrees) > kMost)
+    fail(Wrong::argument_angle, arguments.column(),
+         {arguments.name(), "0", text::number(degrees), text::number(-kMost), text::number(kMost)});
+  if (run.machine().spindles == 0) fail(Fault::no_spindle, arguments.column(), {arguments.name()});
+  if (state.motion.spindle != SpindleMode::orient && state.motion.spindle != SpindleMode::turn)
+    fail(Wrong::spindle_free, arguments.column(), {arguments.name()});
+  if (state.modes.cutting || state.modes.speed <= 0.0)
+    fail(Wrong::spindle_speed, arguments.column(), {arguments.name()});
+  run.motion().turn_spindle_by(degrees);
+}
+
 }  // namespace servogate::program::fenix

@@ -46,9 +46,7 @@ class Stored {
     if (!given(x)) x = std::abs(z) * slope;
     if (!given(z)) z = std::abs(x) / slope;
     if (!(std::abs(x) <= kLongest && std::abs(z) <= kLongest))
-      fail(Wrong::argument_range, column_,
-           {name_, angle_name, text::number(angle),
-            text::both("an angle that leads to the end", "угол, который ведёт к концу")});
+      fail(Wrong::argument_slope, column_, {name_, angle_name, text::number(angle)});
     return {z, x};
   }
   /// As words of X count at this place.
@@ -120,7 +118,7 @@ ProfileVector surface(double angle, const Profile& profile) {
 void take_contour(const Stored& stored, bool along_z, int column, Profile& profile) {
   const double mode = given(stored.contour(0)) ? stored.contour(0) : 0.0;
   if (mode != 0.0 && mode != 1.0 && mode != 2.0 && mode != 3.0)
-    fail(Wrong::argument_range, column,
+    fail(Wrong::argument_choice, column,
          {"G852", "0", text::number(mode), text::both("0, 1, 2 or 3", "0, 1, 2 или 3")});
   profile.forward = mode == 0.0 || mode == 2.0 ? -1.0 : 1.0;
   profile.outward = mode < 2.0 ? 1.0 : -1.0;
@@ -177,10 +175,10 @@ void profile(Execution& run, const BlockWords& words) {
   cycle.step = arguments.positive(3, 1.0, true);
   const double mode = arguments.number(7);
   if (mode != 0.0 && mode != 1.0 && mode != 2.0)
-    fail(Wrong::argument_range, arguments.column(),
+    fail(Wrong::argument_choice, arguments.column(),
          {cycle.name, "7", text::number(mode), text::both("0, 1 or 2", "0, 1 или 2")});
   if (arguments.number(6) != 0.0)
-    fail(Wrong::argument_range, arguments.column(),
+    fail(Wrong::argument_choice, arguments.column(),
          {cycle.name, "6", text::number(arguments.number(6)), "0"});
   cycle.roughs = mode != 2.0;
   cycle.finishes = mode != 0.0;

@@ -191,16 +191,24 @@ void judge(const Judgement& reading, const Block& block) {
   }
 }
 
+/// Of this file, of the program, or of the file of the user's cycles that lies beside it.
 void call_cycle(Execution& run, const BlockWords& words) {
   const Word& word = *words.instead_word;
   const int number = static_cast<int>(word.value.number);
-  const std::uint32_t line = run.flow().source().definition(kFirstCycle + number);
+  int file = run.flow().file();
+  std::uint32_t line = run.flow().source().definition(kFirstCycle + number);
+  if (line == Source::kNone && file != 0) {
+    file = 0;
+    line = run.flow().main_source().definition(kFirstCycle + number);
+  }
+  if (line == Source::kNone && (file = run.flow().open(kCycleFile)) >= 0)
+    line = run.flow().source(file).definition(kFirstCycle + number);
   if (line == Source::kNone) fail(Fault::g_unknown, word.column, {std::to_string(number)});
   run.refuse_all_but(words, {});
   std::vector<double> arguments;
   for (std::size_t i = 0; i < word.argument_count; ++i) arguments.push_back(run.block().arguments[i].number);
   run.motion().end_profile();
-  run.flow().call(line + 1, 1, word.column, std::move(arguments));
+  run.flow().call(line + 1, 1, word.column, std::move(arguments), file);
 }
 
 /// Milliseconds as an argument, or of any axis' word or E, which then moves nothing; 3 s without.

@@ -69,7 +69,7 @@ bool system_variable(std::string_view line, std::size_t& pos, const ValueSource*
     if (inside >= line.size() || line[inside] != ']') fail(Fault::expected, column, {"]"});
     end = inside + 1;
   }
-  if (number < 0) fail(Fault::not_executed, column, {name});
+  if (number < 0) fail(iso::Wrong::system_variable, column, {name});
   pos = end;
   if (source != nullptr) value = source->system(number, column);
   return true;

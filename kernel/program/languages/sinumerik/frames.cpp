@@ -4,6 +4,7 @@
 
 #include "kernel/program/execution/execution.hpp"
 #include "kernel/program/geometry/degrees.hpp"
+#include "kernel/program/languages/sinumerik/iso/faults.hpp"
 #include "kernel/program/languages/sinumerik/sinumerik.hpp"
 
 /// The programmable frame: a shift, and a rotation in the plane about the shifted zero. TRANS and ROT begin
@@ -48,7 +49,7 @@ void add_shift(Execution& run, const BlockWords& words) {
 void add_rotation(Execution& run, const BlockWords& words) {
   for (const Word* word : words.axis)
     if (word != nullptr)
-      fail(Fault::not_executed, word->column, {word_text(run.dialect(), run.block(), *word)});
+      fail(iso::Wrong::rotation_axis, word->column, {word_text(run.dialect(), run.block(), *word)});
   run.refuse_all_but(words, {words.angle});
   Frame& frame = run.state().frames.frame;
   const double angle = words.angle == nullptr ? 0.0 : run.numbers().resolve(words.angle->value);

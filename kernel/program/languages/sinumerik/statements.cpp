@@ -42,7 +42,7 @@ void assign(Execution& run, const Word& word) {
 void read_system_variable(BlockText& text, Word& word) {
   name_at(text.line, text.pos);
   const std::size_t start = word.column - 1u;
-  fail(Fault::not_executed, word.column, {std::string(text.line.substr(start, text.pos - start))});
+  fail(iso::Wrong::system_variable, word.column, {std::string(text.line.substr(start, text.pos - start))});
 }
 
 // --- GOTOF LABEL, IF condition GOTOB N100
@@ -126,7 +126,11 @@ void read_name_of_program(BlockText& text, Word&) {
 
 void call(Execution& run, const BlockWords& words) {
   const Word& word = *words.instead_word;
-  run.refuse_all_but(words, {words.count});
+  const Block& block = run.block();
+  for (std::size_t i = 0; i < block.count; ++i)
+    if (&block.words[i] != &word && &block.words[i] != words.count && block.words[i].meaning != Meaning::m &&
+        block.words[i].meaning != Meaning::g && block.words[i].meaning != Meaning::statement)
+      fail(iso::Wrong::beside_call, block.words[i].column, {word_text(run.dialect(), block, block.words[i])});
   const double passes = words.count == nullptr ? 1.0 : run.numbers().resolve(words.count->value);
   if (!(passes >= 1.0 && passes <= kMostPasses))
     fail(Fault::out_of_range, words.count->column,
@@ -164,6 +168,10 @@ void diameter_absolute(Execution& run, const Word&) {
 void radius(Execution& run, const Word&) { run.state().modes.across = Function::radius; }
 
 void nothing(Execution&, const Word&) {}
+
+/// CDON and CDOF: whether a compensated contour is searched for bottlenecks (specification 10.6).
+void watch_on(Execution& run, const Word&) { run.state().motion.watch.on = true; }
+void watch_off(Execution& run, const Word&) { run.state().motion.watch.on = false; }
 
 /// SETAL(61000)
 void read_alarm(BlockText& text, Word& word) {
@@ -214,6 +222,8 @@ constexpr WordRule kWords[] = {
     {.name = "CFC", .run = feed_of_contour},
     {.name = "CFTCP", .run = feed_of_centre},
     {.name = "CFIN", .run = feed_of_inside},
+    {.name = "CDON", .run = watch_on},
+    {.name = "CDOF", .run = watch_off},
     // Words of the language that this version does not execute.
     {.name = "SCALE"},
     {.name = "ASCALE"},
@@ -302,7 +312,7 @@ bool value_in_place_of_number(BlockText& text, Value& value) {
     return true;
   }
   if (function && (name == "DC" || name == "ACP" || name == "ACN" || name == "CAC" || name == "CIC"))
-    fail(Fault::not_executed, text.column(), {name});
+    fail(iso::Wrong::rotary_way, text.column(), {name});
   text.expression(value);
   return true;
 }

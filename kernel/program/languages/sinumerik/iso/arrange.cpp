@@ -72,8 +72,8 @@ void judge_plane(const Execution& run, const BlockWords& words) {
     if (words.axis[at(one)] != nullptr)
       fail(Wrong::plane_parallel, word.column,
            {word_text(run.dialect(), block, *plane), std::string(1, kMain[i]), std::string(1, kParallel[i])});
-    fail(Fault::not_executed, word.column,
-         {word_text(run.dialect(), block, *plane) + " " + word_text(run.dialect(), block, word)});
+    fail(Wrong::plane_exchange, word.column,
+         {word_text(run.dialect(), block, *plane), std::string(1, kParallel[i]), std::string(1, kMain[i])});
   }
 }
 
@@ -105,9 +105,11 @@ void arrange(Execution& run, BlockWords& words) {
   if ((letters & (bit_of('U') | bit_of('V') | bit_of('W'))) != 0 && !run.machine().turns())
     judge_plane(run, words);
   arrange_transformation(run, words);
+  arrange_length(run, words);
   if (words.instead == nullptr) {
     arrange_polar(run, words);
     arrange_angle(run, words);
+    arrange_circle(run, words);
     std::uint32_t taken = 0;
     if (state.modes.motion == Function::thread && words.axes > 0) taken |= bit_of('Q');
     if (words.statement_count > 0) taken |= bit_of('P') | bit_of('L');
@@ -117,6 +119,7 @@ void arrange(Execution& run, BlockWords& words) {
       taken |= bit_of('P');
     words.for_instead = stray_left(words, letters, taken);
   }
+  arrange_override(run);
   if (run.contour().engaged()) count_dummy_blocks(run, words);
   const bool calls = value(state, own::macro) != 0.0 && words.axes > 0 && words.instead == nullptr;
   if (calls && !is_macro_program(run, 2.0)) arrange_calls(run, words);

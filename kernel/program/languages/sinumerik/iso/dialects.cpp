@@ -51,10 +51,9 @@ constexpr Row kRows[] = {
     {kSpeed, all(97), Function::revolutions, nullptr, nullptr, kTurns | kMills},
     {kDimension, {kNo, 90, 90, 90}, Function::absolute, nullptr, nullptr, kTurns | kMills},
     {kDimension, {kNo, 91, 91, 91}, Function::incremental},
-    {kRotation, turn(68), Function::later},
-    {kRotation, turn(69), Function::nothing},
+    {kRotation, turn(68), Function::own, rotate_turned},
     {kRotation, mill(68), Function::own, rotate},
-    {kRotation, mill(69), Function::own, rotate_off},
+    {kRotation, all(69), Function::own, rotate_off},
     {kFeed, {98, 94, 94, 94}, Function::feed_minute, nullptr, another_feed, kTurns | kMills},
     {kFeed, {99, 95, 95, 95}, Function::feed_revolution, nullptr, another_feed},
     {kFeed, mill(93), Function::feed_inverse, nullptr, another_feed},
@@ -89,9 +88,9 @@ constexpr Row kRows[] = {
     {kOffset, all(57), Function::work_offset, nullptr, settable, 0, 4},
     {kOffset, all(58), Function::work_offset, nullptr, settable, 0, 5},
     {kOffset, all(59), Function::work_offset, nullptr, settable, 0, 6},
-    {kExact, mill(61), Function::exact},
-    {kExact, mill(63), Function::continuous},
-    {kExact, mill(64), Function::continuous, nullptr, nullptr, kMills},
+    {kExact, mill(61), Function::exact, nullptr, path_mode},
+    {kExact, mill(63), Function::continuous, nullptr, tapping_mode},
+    {kExact, mill(64), Function::continuous, nullptr, path_mode, kMills},
     {kPlane, all(17), Function::plane_12, nullptr, nullptr, kMills},
     {kPlane, all(18), Function::plane_31, nullptr, nullptr, kTurns},
     {kPlane, all(19), Function::plane_23},
@@ -116,11 +115,11 @@ constexpr Row kRows[] = {
     {kOnce, all(27), Function::own, reference_check},
     {kOnce, all(28), Function::own, reference_return},
     {kOnce, all(30), Function::own, reference_other},
-    {kOnce, all(point(30, 1)), Function::later},
+    {kOnce, all(point(30, 1)), Function::own, reference_floating},
     {kOnce, all(31), Function::own, measure},
     {kOnce, all(52), Function::own, local},
     {kOnce, all(53), Function::own, machine_coordinates},
-    {kOnce, all(60), Function::later},
+    {kOnce, all(60), Function::own, one_sided},
     {kOnce, all(65), Function::own, call_macro},
     {kOnce, turn(70, 70, 72), Function::own, finish},
     {kOnce, turn(71, 71, 73), Function::own, rough_along},
@@ -228,7 +227,8 @@ constexpr OwnError kErrors[] = {
     {Fault::program_missing, {"P507", "the program {0} is not there", "программы {0} нет"}},
 };
 
-Dialect made(System system) {
+/// `values`: expressions stand in place of numbers.
+Dialect made(System system, bool values) {
   static const std::vector<GRule> tables[systems] = {g_words(turning_a), g_words(turning_b),
                                                      g_words(turning_c), g_words(milling)};
   const bool turns = system != milling;
@@ -259,6 +259,7 @@ Dialect made(System system) {
       .variables = settings(),
       .errors = kErrors,
       .conflict = [](int, int) { return false; },
+      .value = values ? value_of_macro : no_value_of_macro,
       .judge = judge,
       .thread = thread,
       .system = system_value,
@@ -269,18 +270,24 @@ Dialect made(System system) {
   };
 }
 
-const Dialect& of(System system) {
-  static const std::array<Dialect, systems> kDialects = {made(turning_a), made(turning_b), made(turning_c),
-                                                         made(milling)};
-  return kDialects[system];
+const Dialect& of(System system, bool values) {
+  static const std::array<std::array<Dialect, systems>, 2> kDialects = [] {
+    std::array<std::array<Dialect, systems>, 2> all{};
+    for (std::size_t with = 0; with < 2; ++with)
+      for (std::size_t s = 0; s < systems; ++s) all[with][s] = made(static_cast<System>(s), with == 1);
+    return all;
+  }();
+  return kDialects[values ? 1 : 0][system];
 }
 
 }  // namespace
 
 const Dialect& dialect(const MachineModel& machine) {
-  if (!machine.turns()) return of(milling);
+  const double mask = machine.variable("MD20734", 0.0);
+  const bool values = mask >= 0.0 && mask < 1e9 && (static_cast<unsigned>(mask) >> 3 & 1u) != 0;
+  if (!machine.turns()) return of(milling, values);
   const double system = machine.variable("MD10881", 1.0);
-  return of(system == 0.0 ? turning_b : system == 2.0 ? turning_c : turning_a);
+  return of(system == 0.0 ? turning_b : system == 2.0 ? turning_c : turning_a, values);
 }
 
 bool is_iso(const Dialect& language) { return language.arrange == arrange; }

@@ -57,8 +57,31 @@ constexpr text::Entry kMessages[] = {
     {"P873", "{0} = {1}: this version has {2} alone", "{0} = {1}: в этой версии есть только {2}"},
     {"P874, 14011", "{0} has no contour in a typed block", "{0}: во введённом кадре контура нет"},
     {"P875", "the program ends with its alarm {0}", "программа завершается своим сообщением {0}"},
+    {"P876",
+     "a circle outside of the selected plane does not go with {0}: select its plane with G17, G18 or G19",
+     "окружность вне выбранной плоскости не сочетается с {0}: выберите её плоскость через G17, G18 или G19"},
+    {"P877", "{0}: the axis {1} has no floating reference position: set FLOATING_{1} in the machine file",
+     "{0}: у оси {1} нет плавающей референтной точки: задайте FLOATING_{1} в файле станка"},
+    {"P878",
+     "{0}: none of its axes has an overrun: set OVERRUN_ with the letter of an axis in the machine file",
+     "{0}: ни у одной из осей нет перебега: задайте в файле станка OVERRUN_ с буквой оси"},
+    {"P879", "{0} needs the angle R of its rotation; there is no second turret that it could switch to",
+     "{0} требует угла поворота R; второй револьверной головки, на которую можно переключить, нет"},
+    {"P880", "{0}: an expression in place of a number needs bit 3 of MD20734 in the machine file",
+     "{0}: для выражения вместо числа в файле станка нужен бит 3 в MD20734"},
+    {"P881", "{0}: {1} does not take the place of {2} in this version",
+     "{0}: в этой версии {1} не занимает место {2}"},
+    {"P882",
+     "{0}: this version has the variables of macros and measurements alone, and programs only read them",
+     "{0}: в этой версии есть только переменные макросов и измерений, и программы их только читают"},
+    {"P883", "{0} does not stand beside the call of a subprogram",
+     "{0} не стоит рядом с вызовом подпрограммы"},
+    {"P884", "{0}: the way round of a rotary axis is not chosen in this version: write AC or IC",
+     "{0}: направление поворотной оси в этой версии не выбирается: задайте AC или IC"},
+    {"P885", "{0}: a rotation goes about the axis across the plane: select the plane and write RPL=",
+     "{0}: поворот идёт вокруг оси, перпендикулярной плоскости: выберите плоскость и задайте RPL="},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::user_alarm) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::rotation_axis) + 1);
 
 }  // namespace
 

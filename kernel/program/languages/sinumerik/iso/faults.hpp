@@ -48,6 +48,16 @@ enum class Wrong {
   setting_choice,
   contour_mdi,
   user_alarm,
+  circle_plane,
+  floating_missing,
+  overrun_missing,
+  turret,
+  macro_value,
+  plane_exchange,
+  system_variable,
+  beside_call,
+  rotary_way,
+  rotation_axis,
 };
 
 std::span<const text::Entry> messages();

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include "kernel/program/execution/execution.hpp"
 #include "kernel/program/languages/sinumerik/iso/faults.hpp"
 #include "kernel/program/reading/dialect.hpp"
@@ -49,6 +53,8 @@ enum : std::size_t {
   polar_at = polar_pole + 2,  ///< radius and angle
   length_sign = polar_at + 2,
   length_row,
+  length_due,   ///< an axis and 1: it goes to its programmed place with the next motion, whoever is named
+  length_goal,  ///< that place
   start_angle,  ///< of threads, and whether a program has set it
   start_angle_set,
   copies,  ///< of G72.1 and G72.2 that are done, and where they stand
@@ -82,6 +88,7 @@ enum : std::size_t {
   argument_order = argument_ijk + 30,
   argument_count = argument_order + 30,
   argument_g = argument_count + 3,
+  override_told,  ///< 1: the machine knows that the override of the feed does not count
   places,
 };
 }  // namespace own
@@ -98,6 +105,10 @@ double setting(const Execution& run, const char* name);
 bool bit(const Execution& run, int bit);  ///< of MD20734
 /// MD34100, the reference position `n` from 1 of an axis as programs count it; its unit is mm or degrees.
 double reference_position(const Execution& run, int axis, int n);
+/// Data of an axis by the beginning of their names: FLOATING_X, its floating reference position, and
+/// OVERRUN_X, by which G60 goes beyond its end. As programs count them; none: the machine file does not have
+/// it.
+std::optional<double> axis_setting(const Execution& run, std::string_view name, int axis);
 
 // block.cpp: the words of the block by their letters
 const Word* find(const Block& block, char letter);
@@ -121,6 +132,14 @@ void leave_to_instead(BlockWords& words);
 double target(const Execution& run, const BlockWords& words, int axis);
 std::string g_word(const Execution& run, const BlockWords& words);
 int column(const BlockWords& words);
+
+// circles.cpp
+/// Centres outside of the selected plane name that of their circle (specification 5.4).
+void arrange_circle(Execution& run, BlockWords& words);
+
+// values.cpp: X=$C_I[0], with MD20734 bit 3 (specification 16.2)
+bool value_of_macro(BlockText& text, Value& value);
+bool no_value_of_macro(BlockText& text, Value& value);
 
 // arrange.cpp, numbers.cpp
 void arrange(Execution& run, BlockWords& words);
@@ -149,6 +168,10 @@ int measured_number(std::string_view name, char axis);
 void to_siemens(Execution& run, const BlockWords& words);
 void dwell(Execution& run, const BlockWords& words);
 void another_feed(Execution& run, BlockWords& words, const Word& word);
+/// G61 and G64, and G63, in which the override of the feed does not count.
+void path_mode(Execution& run, BlockWords& words, const Word& word);
+void tapping_mode(Execution& run, BlockWords& words, const Word& word);
+void arrange_override(Execution& run);
 void plain_motion(Execution& run, BlockWords& words, const Word& word);
 void thread_constant(Execution& run, BlockWords& words, const Word& word);
 void thread_variable(Execution& run, BlockWords& words, const Word& word);
@@ -170,6 +193,8 @@ void arrange_angle(Execution& run, BlockWords& words);
 void reference_return(Execution& run, const BlockWords& words);
 void reference_check(Execution& run, const BlockWords& words);
 void reference_other(Execution& run, const BlockWords& words);
+void reference_floating(Execution& run, const BlockWords& words);
+void one_sided(Execution& run, const BlockWords& words);
 void machine_coordinates(Execution& run, const BlockWords& words);
 
 // offsets.cpp: presets, G52, G54 P, scaling, mirror, rotation, polar coordinates
@@ -184,6 +209,7 @@ void scale_off(Execution& run, const BlockWords& words);
 void mirror(Execution& run, const BlockWords& words);
 void mirror_off(Execution& run, const BlockWords& words);
 void rotate(Execution& run, const BlockWords& words);
+void rotate_turned(Execution& run, const BlockWords& words);  ///< of turning: in its plane, by R
 void rotate_off(Execution& run, const BlockWords& words);
 void polar_on(Execution& run, BlockWords& words, const Word& word);
 void polar_off(Execution& run, BlockWords& words, const Word& word);
@@ -194,6 +220,8 @@ void refuse_scaled(const Execution& run, const BlockWords& words);
 // tools.cpp
 void write_data(Execution& run, const BlockWords& words);
 void arrange_tool(Execution& run, BlockWords& words);
+/// With MD20382 = 1 another length moves its axis, too.
+void arrange_length(Execution& run, BlockWords& words);
 void length_plus(Execution& run, BlockWords& words, const Word& word);
 void length_minus(Execution& run, BlockWords& words, const Word& word);
 void length_off(Execution& run, BlockWords& words, const Word& word);

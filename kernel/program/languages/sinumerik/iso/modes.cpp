@@ -13,6 +13,8 @@ void to_siemens(Execution& run, const BlockWords& words) {
     if (&run.block().words[i] != words.instead_word)
       fail(Wrong::switch_alone, run.block().words[i].column, {"G290"});
   run.motion().end_profile();
+  run.state().modes.override_effective = true;
+  arrange_override(run);
   run.state().frames.lengths_by_language = false;
   run.speak(sinumerik::dialect());
 }
@@ -24,6 +26,19 @@ void look_ahead(Execution& run, const BlockWords& words) {
   only(run, "P");
   if (const int p = whole(run, 'P', 1); p > 1)
     fail(Wrong::letter_range, column(words), {"G08", "P", std::to_string(p), "0, 1"});
+}
+
+void path_mode(Execution& run, BlockWords&, const Word&) { run.state().modes.override_effective = true; }
+void tapping_mode(Execution& run, BlockWords&, const Word&) { run.state().modes.override_effective = false; }
+
+/// The machine is told where it does not know yet.
+void arrange_override(Execution& run) {
+  State& state = run.state();
+  const bool effective = state.modes.override_effective;
+  if (effective == (value(state, own::override_told) == 0.0)) return;
+  value(state, own::override_told) = effective ? 0.0 : 1.0;
+  run.motion().end_profile();
+  run.emit(FeedOverride{effective});
 }
 
 void another_feed(Execution& run, BlockWords& words, const Word& word) { new_feed(run, words, word); }

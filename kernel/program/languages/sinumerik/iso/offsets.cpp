@@ -65,6 +65,21 @@ void alone(Execution& run, const BlockWords& words, std::string_view letters) {
   run.motion().end_profile();
 }
 
+/// About the words of the plane's axes, missing ones where the axes stand; R adds with incremental
+/// dimensions.
+void rotate_in_plane(Execution& run, const BlockWords& words) {
+  State& state = run.state();
+  run.frames().need_plane(column(words));
+  const FramesState& frames = state.frames;
+  const int axes[] = {frames.axis1, frames.axis2};
+  for (std::size_t i = 0; i < 2; ++i)
+    state.own[own::rotation_at + i] = absolute(run, words, axes[i], frames.programmed[at(axes[i])]);
+  const double angle = number(run, 'R', setting(run, "SD42150"));
+  const bool adds = state.modes.dimension == Function::incremental;
+  value(state, own::rotation) = std::fmod(angle + (adds ? value(state, own::rotation) : 0.0), 360.0);
+  refresh_offsets(run);
+}
+
 }  // namespace
 
 void refuse_scaled(const Execution& run, const BlockWords& words) {
@@ -206,24 +221,23 @@ void mirror_off(Execution& run, const BlockWords& words) {
   refresh_offsets(run);
 }
 
-/// About X and Y, missing ones where the axes stand; R adds with G91 (specification 8.7).
+/// In the plane, or about I, J and K (specification 8.7, 8.8).
 void rotate(Execution& run, const BlockWords& words) {
-  State& state = run.state();
   for (const char letter : {'I', 'J', 'K'})
     if (const Word* word = find(run.block(), letter); word != nullptr) {
       alone(run, words, "XYZIJKR");
       return turn_space(run, words);
     }
   alone(run, words, "XYZR");
-  run.frames().need_plane(column(words));
-  const FramesState& frames = state.frames;
-  const int axes[] = {frames.axis1, frames.axis2};
-  for (std::size_t i = 0; i < 2; ++i)
-    state.own[own::rotation_at + i] = absolute(run, words, axes[i], frames.programmed[at(axes[i])]);
-  const double angle = number(run, 'R', setting(run, "SD42150"));
-  const bool adds = state.modes.dimension == Function::incremental;
-  value(state, own::rotation) = std::fmod(angle + (adds ? value(state, own::rotation) : 0.0), 360.0);
-  refresh_offsets(run);
+  rotate_in_plane(run, words);
+}
+
+/// A double turret is switched by G68 alone, which here has no meaning.
+void rotate_turned(Execution& run, const BlockWords& words) {
+  alone(run, words, "XYZR");
+  if (find(run.block(), 'R') == nullptr) fail(Wrong::turret, column(words), {g_word(run, words)});
+  refuse_scaled(run, words);
+  rotate_in_plane(run, words);
 }
 
 void rotate_off(Execution& run, const BlockWords& words) {

@@ -25,11 +25,12 @@ void to_point(Execution& run, const BlockWords& words) {
 }
 
 /// By the intermediate point; on a milling machine the length of the tool ends there.
-void go(Execution& run, const BlockWords& words, int n) {
+template <typename Reference>
+void go(Execution& run, const BlockWords& words, Reference&& reference) {
   to_point(run, words);
   Position to = run.state().frames.machine;
   for (int a = 0; a < run.machine().axis_count(); ++a)
-    if (words.axis[at(a)] != nullptr) to[at(a)] = reference_position(run, a, n);
+    if (words.axis[at(a)] != nullptr) to[at(a)] = reference(a);
   if (to != run.state().frames.machine) run.motion().rapid_to(to);
   State& state = run.state();
   const int axis = state.frames.normal;
@@ -47,7 +48,7 @@ constexpr std::string_view kAxes = "XYZABCUVWH";
 
 void reference_return(Execution& run, const BlockWords& words) {
   begin(run, words, kAxes);
-  go(run, words, 1);
+  go(run, words, [&run](int axis) { return reference_position(run, axis, 1); });
 }
 
 void reference_other(Execution& run, const BlockWords& words) {
@@ -55,7 +56,33 @@ void reference_other(Execution& run, const BlockWords& words) {
   const int n = whole(run, 'P', 2);
   if (n < 2 || n > 4)
     fail(Wrong::reference_number, find(run.block(), 'P')->column, {g_word(run, words), std::to_string(n)});
-  go(run, words, n);
+  go(run, words, [&run, n](int axis) { return reference_position(run, axis, n); });
+}
+
+/// G30.1: a point of each axis that the machine file has.
+void reference_floating(Execution& run, const BlockWords& words) {
+  begin(run, words, kAxes);
+  for (int a = 0; a < run.machine().axis_count(); ++a)
+    if (const Word* word = words.axis[at(a)]; word != nullptr && !axis_setting(run, "FLOATING_", a))
+      fail(Wrong::floating_missing, word->column, {g_word(run, words), run.machine().axes[at(a)].letter});
+  go(run, words, [&run](int axis) { return axis_setting(run, "FLOATING_", axis).value_or(0.0); });
+}
+
+/// G60: each axis comes to its end from the side of its overrun, at rapid.
+void one_sided(Execution& run, const BlockWords& words) {
+  begin(run, words, kAxes);
+  const Position to = run.motion().target_of(words);
+  Position beyond = to;
+  bool any = false;
+  for (int a = 0; a < run.machine().axis_count(); ++a) {
+    if (words.axis[at(a)] == nullptr) continue;
+    const auto overrun = axis_setting(run, "OVERRUN_", a);
+    any = any || overrun;
+    beyond[at(a)] += overrun.value_or(0.0);
+  }
+  if (!any) fail(Wrong::overrun_missing, column(words), {g_word(run, words)});
+  if (beyond != run.state().frames.machine) run.motion().rapid_to(beyond);
+  if (to != beyond) run.motion().rapid_to(to);
 }
 
 void reference_check(Execution& run, const BlockWords& words) {

@@ -14,22 +14,36 @@ namespace {
 struct Setting {
   const char* name;
   double otherwise, least, most;
+  bool ends_alone = false;                               ///< only these two, nothing between them
+  void (*also)(Execution& run, double value) = nullptr;  ///< beside being looked up by name
 };
+
+void watch(Execution& run, double value) { run.state().motion.watch.on = value == 2.0; }
+void watched(Execution& run, double value) { run.state().motion.watch.elements = static_cast<int>(value); }
 
 constexpr double kAny = 1e9;
 
 constexpr Setting kSettings[] = {
-    {"MD10240", 1, 1, 1},            // base unit: mm
-    {"MD10760", 1, 0, 1},            // G53 without the tool's offsets
-    {"MD10881", 1, 0, 2},            // G-code system: 0 B, 1 A, 2 C
-    {"MD10884", 1, 0, 1},            // 1: as a pocket calculator, 0: standard notation
-    {"MD10886", 0, 0, 1},            // 0: IS-B, 1: IS-C
-    {"MD20095", 29, 6, 99999999},    // M of rigid tapping
-    {"MD20250", 3, 3, 1000},         // blocks without motion in a compensated contour
+    {"MD10240", 1, 1, 1},                    // base unit: mm
+    {"MD10704", 2, 2, 2},                    // the switch of the dry run acts without slowing the path down
+    {"MD10706", 2, 2, 2},                    // the same of the skip levels
+    {"MD10760", 1, 0, 1},                    // G53 without the tool's offsets
+    {"MD10881", 1, 0, 2},                    // G-code system: 0 B, 1 A, 2 C
+    {"MD10884", 1, 0, 1},                    // 1: as a pocket calculator, 0: standard notation
+    {"MD10886", 0, 0, 1},                    // 0: IS-B, 1: IS-C
+    {"MD20095", 29, 6, 99999999},            // M of rigid tapping
+    {"MD20110", 0, 0, 0},                    // bit 6: the length of a tool outlasts a reset
+    {"MD20150_22", 1, 1, 2, true, watch},    // 2: CDON at power-on
+    {"MD20240", 4, 2, 100, false, watched},  // elements of a contour over which CDON looks
+    {"MD20250", 3, 3, 1000},                 // blocks without motion in a compensated contour
+    {"MD20270", -2, -2, 0, true},            // behind a tool change: -2 H stays, 0 none is in force
+    {"MD20382", 0, 0, 1, true},      // 1: another length moves its axis with the next motion of any axis
     {"MD20732", 1, 1, 1},            // G00 along a line
     {"MD20734", 0x800, 0, 0xFFFFF},  // function mask
     {"MD22910", 0, 0, 1},            // scaling: 0 by 0.001, 1 by 0.00001
     {"MD22914", 0, 0, 1},            // scaling by axis
+    {"MD22220", 0, 0, 2, true},      // T goes to the PLC before the motion (0) or behind it (2)
+    {"MD31090", 1, 1, 1},            // increments of jog count in mm, whatever G20 says
     {"SD42000", 0, 0, 359.999},      // start angle of threads
     {"SD42140", 1, 0, kAny},         // scaling factor without P
     {"SD42150", 0, -kAny, kAny},     // rotation without R
@@ -65,6 +79,8 @@ constexpr Setting kSettings[] = {
 
 void any(Execution&, double, int, int) {}
 
+constexpr std::string_view kAxisLetters = "XYZABCUVW";
+
 /// MD34100_X2: the second reference position of X.
 std::string reference_name(char axis, int n) {
   return std::string("MD34100_") + axis + (n == 1 ? "" : std::to_string(n));
@@ -78,8 +94,14 @@ const Setting* row_of(std::string_view name) {
 
 /// One for each row: the name tells which.
 template <std::size_t I>
-void check(Execution&, double value, int, int column) {
+void check(Execution& run, double value, int, int column) {
   const Setting& row = kSettings[I];
+  const bool alone = row.least == row.most;
+  if ((row.ends_alone || alone) && value != row.least && value != row.most)
+    fail(Wrong::setting_choice, column,
+         {row.name, text::number(value),
+          alone ? text::number(row.least) : text::number(row.least) + ", " + text::number(row.most)});
+  if (row.also != nullptr) row.also(run, value);
   if (!(value >= row.least && value <= row.most))
     fail(Fault::variable_range, column,
          {row.name, text::number(value), text::number(row.least), text::number(row.most)});
@@ -95,8 +117,10 @@ void add_checks(std::vector<VariableRule>& rules, std::index_sequence<I...>) {
 std::span<const VariableRule> settings() {
   static const std::vector<std::string> references = [] {
     std::vector<std::string> names;
-    for (const char axis : std::string_view("XYZABCUVW"))
+    for (const char axis : kAxisLetters) {
       for (int n = 1; n <= 4; ++n) names.push_back(reference_name(axis, n));
+      for (const char* name : {"FLOATING_", "OVERRUN_"}) names.push_back(std::string(name) + axis);
+    }
     return names;
   }();
   static const std::vector<VariableRule> rules = [] {
@@ -115,6 +139,13 @@ double setting(const Execution& run, const char* name) {
 
 bool bit(const Execution& run, int bit) {
   return (static_cast<unsigned>(setting(run, "MD20734")) >> bit & 1u) != 0;
+}
+
+std::optional<double> axis_setting(const Execution& run, std::string_view name, int axis) {
+  const MachineModel::Axis& a = run.machine().axes[at(axis)];
+  const auto found = run.machine().variables.find(std::string(name) + a.letter);
+  if (found == run.machine().variables.end()) return std::nullopt;
+  return a.diameter ? found->second / 2.0 : found->second;
 }
 
 double reference_position(const Execution& run, int axis, int n) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "kernel/program/languages/sinumerik/iso/iso.hpp"
@@ -8,7 +10,7 @@ namespace servogate::program::sinumerik::iso {
 namespace {
 
 constexpr int kSplit = 100;  ///< of T on a lathe: the tool above, its offset below
-constexpr int kSettable = 6, kFirstOfP = 100;
+constexpr int kSettable = 6, kFirstOfP = 100, kToolChange = 6;
 constexpr std::string_view kTurned = "XYZ";
 
 const Tables::Corrector* row_of(const Execution& run, int number) {
@@ -29,8 +31,15 @@ void use_length(Execution& run, int column) {
   const std::string& letter = run.machine().axes[at(axis)].letter;
   double length = 0.0;
   if (row != nullptr) length = row->length_of(row->length.contains(letter) ? letter : "Z");
-  state.frames.frame.set_length(axis, value(state, own::length_sign) * length);
+  length *= value(state, own::length_sign);
+  const bool moves =
+      setting(run, "MD20382") == 1.0 && std::abs(length - state.frames.frame.length(axis)) > 1e-9;
+  const double programmed = state.frames.programmed[at(axis)];
+  state.frames.frame.set_length(axis, length);
   run.frames().changed();
+  if (!moves) return;
+  value(state, own::length_due) = axis + 1.0;
+  value(state, own::length_goal) = programmed;
 }
 
 void select(Execution& run, double sign) {
@@ -88,8 +97,15 @@ void arrange_tool(Execution& run, BlockWords& words) {
     if (split) tool.value.number = number / kSplit;
     block.corrector.number = !turns ? state.frames.corrector : split ? number % kSplit : number;
   }
+  words.tool_behind = words.tool != nullptr && setting(run, "MD22220") == 2.0;
   if (turns || words.instead != nullptr) return;
   const Word *h = find(block, 'H'), *d = find(block, 'D');
+  const bool changes = std::find(words.m_code.begin(), words.m_code.begin() + words.m_count, kToolChange) !=
+                       words.m_code.begin() + words.m_count;
+  if (changes && setting(run, "MD20270") == 0.0) {
+    value(state, own::length_row) = 0.0;
+    use_length(run, 0);
+  }
   if (h != nullptr) {
     value(state, own::length_row) = whole(run, 'H', 0);
     if (value(state, own::length_sign) != 0.0) use_length(run, h->column);
@@ -99,6 +115,15 @@ void arrange_tool(Execution& run, BlockWords& words) {
   if (number != 0 && row_of(run, number) == nullptr)
     fail(Wrong::offset_missing, d->column, {"D" + std::to_string(number)});
   state.frames.radius_row = number;
+}
+
+void arrange_length(Execution& run, BlockWords& words) {
+  State& state = run.state();
+  const int axis = static_cast<int>(value(state, own::length_due)) - 1;
+  if (axis < 0 || words.axes == 0) return;
+  value(state, own::length_due) = 0.0;
+  if (words.instead == nullptr && words.axis[at(axis)] == nullptr)
+    set_axis(run, words, axis, value(state, own::length_goal));
 }
 
 namespace {

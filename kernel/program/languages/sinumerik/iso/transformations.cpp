@@ -216,7 +216,7 @@ void arrange_transformation(Execution& run, BlockWords& words) {
     if (word.g == nullptr) continue;
     const bool frame = word.g->function == Function::work_offset || word.g->motion == preset ||
                        word.g->motion == local || word.g->motion == scale || word.g->motion == mirror ||
-                       word.g->motion == rotate;
+                       word.g->motion == rotate || word.g->motion == rotate_turned;
     const bool turned = word.g->motion == rotate && !cylinder_on && axes.kind != Kind::polar;
     if ((frame && !turned) || (cylinder_on && !run.machine().turns() && !beside_cylinder(word.g->number)))
       fail(Wrong::alone, word.column,

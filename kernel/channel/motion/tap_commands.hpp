@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernel/channel/motion/path_elements.hpp"
+
+namespace servogate::channel {
+
+/// The commands of a rigid tap, gathered until they are one motion: a way in, a dwell where there is one, the
+/// spindle reversed, a way back along the same line; the same again from where chips were broken; until the
+/// tap stands where it began. Not real-time safe.
+class TapCommands {
+ public:
+  struct Leg {
+    program::Command command;
+    double dwell_s = 0.0;
+    program::Spindle turn;  ///< behind it, but for the last
+    path::Element element;  ///< without its tag
+  };
+  enum class Taken {
+    no,        ///< it does not belong to a tap
+    yes,       ///< more is to come
+    complete,  ///< legs() are a tap
+    wrong,     ///< a tap is not like this; flaw() says why
+  };
+
+  /// The next command of the program, whose motion begins at `at`.
+  Taken take(const program::Command& command, PathElements& elements, const path::Vector& at);
+  const std::vector<Leg>& legs() const noexcept { return legs_; }
+  /// Nothing is open.
+  void clear();
+  /// Of Taken::wrong; its place is for the caller to fill in.
+  text::Finding flaw() const;
+
+ private:
+  Taken leg(const program::Command& command, PathElements& elements);
+  Taken turn(const program::Spindle& spindle, PathElements& elements);
+  Taken wrong(const text::Entry& entry);
+
+  std::vector<Leg> legs_;
+  bool turned_ = false;  ///< the spindle was reversed behind the last leg
+  path::Vector start_{};
+  const text::Entry* flaw_ = nullptr;
+};
+
+/// A tap that would leave the travel within what it may go beyond its depth: which axis, and why; nullopt: it
+/// does not. The place is for the caller to fill in.
+std::optional<text::Finding> tap_leaves_travel(const path::Config& config, const AxisMap& axes,
+                                               const path::Vector& from,
+                                               const std::vector<TapCommands::Leg>& legs);
+
+}  // namespace servogate::channel

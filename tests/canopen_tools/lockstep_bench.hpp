@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "tests/canopen_tools/workbench.hpp"
+
+namespace servogate::canopen_tools {
+
+/// Buses in granted time with one drive each, which live as long as one call of the bench; what the bench
+/// says.
+class LockstepBench : public Workbench {
+ protected:
+  /// `servogate LINE` with $DRIVE for url and node of a new drive, or $BUS_OF_DRIVE for its url; `plant` is
+  /// its
+  /// --plant.
+  Ended on_drive(std::string line, const std::string& plant, const std::string& nodes = "5") {
+    const std::string at = std::to_string(++calls_);
+    const std::string socket = path("lockstep-" + at);
+    const std::string url = "lockstep:unix:" + socket + "/can0";
+    auto bus = std::make_unique<usercan::Process>(
+        std::vector<std::string>{"can", "bus", "can0", "--listen", "unix:" + socket, "--lockstep", "2"});
+    EXPECT_TRUE(bus->says("can0"));
+    const usercan::Process drive({"drive", url, "--node", nodes, "--plant", plant});
+    EXPECT_TRUE(drive.says("node 5"));
+    if (const std::size_t place = line.find("$BUS_OF_DRIVE"); place != std::string::npos)
+      line.replace(place, 13, url);
+    else
+      line.replace(line.find("$DRIVE"), 6, url + " 5");
+    Ended ended = tool(line);
+    bus.reset();  // first: the drive waits for its time
+    return ended;
+  }
+  /// `servogate bench WORDS` into a directory of its own.
+  Ended bench(const std::string& words, const std::string& plant = "friction=0.02",
+              const std::string& nodes = "5") {
+    out_ = "run-" + std::to_string(calls_ + 1);
+    return on_drive("bench " + words + " --listen 0.1 --out " + out_, plant, nodes);
+  }
+  json meta() const { return json::parse(desk_.text(out_ + "/meta.json"), nullptr, false); }
+
+  std::string out_;  ///< directory of the last call of bench()
+
+ private:
+  int calls_ = 0;
+};
+
+}  // namespace servogate::canopen_tools
