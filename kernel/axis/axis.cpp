@@ -80,7 +80,8 @@ void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
   if (power_requested_ && !power_permitted_ && moving_) raise(alarm::kEnableWithdrawn, 0.0, set_.v);
   PowerSequence::Inputs in;
   in.wanted = power_requested_ && power_permitted_;
-  in.at_rest = held_ ? !moving_ : actual_standing_;
+  // Beside a tap that goes with its spindle the other axes of its process are held, too.
+  in.at_rest = held_ ? !moving_ && !process_.bound : actual_standing_;
   in.standing = actual_standing_;
   in.feedback_s = config_.feedback_delay * dt;
   in.drive = drive_.online ? drive_.state : image::DriveState::offline;

@@ -118,6 +118,11 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   drive_ = in;
   if (!in.online) {
     actual_rpm_ = 0.0;
+    // An angle that is counted from a zero that is gone is no goal any more: nothing turns again unasked.
+    if (mode_ == SpindleMode::turn) {
+      order(SpindleMode::stop, 0.0);
+      cannot_ = alarm::kSpindleOrientTimeout;
+    }
     marked_ = began_ = angle_known_ = false;
     master_.valid = false;
     return;
@@ -255,7 +260,7 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   if (reaction_ >= Reaction::stop_and_power_off) order(SpindleMode::stop, 0.0);
   cannot_ = 0;
   oriented_ = false;
-  double wanted = wanted_rpm();
+  double wanted = std::clamp(wanted_rpm(), -limit_rpm_, limit_rpm_);
   if (config_.inverter)
     follow_inverter(image, wanted, dt);
   else

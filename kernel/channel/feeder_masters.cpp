@@ -30,7 +30,7 @@ bool Feeder::take_tap(const program::Command& command) {
 /// All ways of a tap are planned at once.
 void Feeder::tap() {
   const path::Vector from = planner_.position();
-  if (auto leaves = tap_leaves_travel(config_, axes_, from, tap_.legs()))
+  if (auto leaves = undrivable_tap(config_, axes_, from, tap_.legs()))
     return fail(placed(std::move(*leaves), tap_.legs().front().command));
   ways_.bar();
   planner_.rest();

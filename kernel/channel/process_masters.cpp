@@ -147,7 +147,10 @@ bool Process::arm_probe(const Event& e, cycle::ProcessContext& c) noexcept {
   if (probing_.latch() && waited_s_ < kProbeArms) return false;
   const bool bounces = probing_.present() && !probing_.settled();
   if (bounces && waited_s_ < kProbeCalms) return false;
-  if (!probing_.present() || probing_.deflected() || bounces) {
+  bool early = false;  // the drives keep the first edge: it must be that of the touch
+  if (probing_.latch())
+    for (const OwnAxis& own : own_axes()) early = early || c.axes[own.machine].probe_latched();
+  if (!probing_.present() || probing_.deflected() || bounces || early) {
     raise(probing_.present() ? alarm::kProbeStuck : alarm::kProbeNone, e, 0.0, 0.0, c);
     probe_told_ = true;
     return false;

@@ -74,10 +74,10 @@ const Section& section_of<ControlConfig>() {
           "thread_retract_side", {},
           "to which side an axis leaves a thread: by the sign of its `thread_retract`, or to where its last "
           "move "
-          "of at least that length came from, which suits outer and inner threads",
+          "of at least 0.2 mm came from, which suits outer and inner threads",
           "в какую сторону ось отходит от резьбы: по знаку `thread_retract` или туда, откуда пришла "
           "последним "
-          "перемещением не короче него, что годится для наружной и внутренней резьбы"),
+          "перемещением не короче 0,2 мм, что годится для наружной и внутренней резьбы"),
       key<&C::tap_overshoot>(
           "tap_overshoot", {.unit = Unit::mm, .min = 0, .max = 100, .above_min = true},
           "so far a tap may go beyond its depth with a spindle that turns round late; where it would rest "

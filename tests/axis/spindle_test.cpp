@@ -48,7 +48,7 @@ class SpindleRig {
           mark + revolution * std::floor((std::max(before, position) - mark) / revolution));
       ++s.drive.latch_sequence;
     }
-    s.drive.online = true;
+    s.drive.online = !away;
     s.drive.state = fault   ? image::DriveState::fault
                     : quick ? image::DriveState::quick_stop_active
                     : on    ? image::DriveState::operation_enabled
@@ -78,8 +78,9 @@ class SpindleRig {
   image::Reaction reaction = image::Reaction::none;
   std::vector<Event> events;
   double speed = 0.0, position = 0.0, mark = 777.0, steepest = 0.0, last_command = 0.0;
-  bool fault = false, blocked = false, silent = false;  ///< silent: its process data do not come
-  bool marks = true;                                    ///< the drive captures its zero mark
+  bool fault = false, blocked = false, silent = false;
+  bool away = false;  ///< silent: its process data do not come
+  bool marks = true;  ///< the drive captures its zero mark
 };
 
 TEST(Spindle, ramps_to_its_speed_and_says_when_it_is_there) {
@@ -277,6 +278,37 @@ TEST(Spindle, that_turns_by_an_angle_stops_without_the_enable_and_reaches_its_an
   rig.run(10'000);
   EXPECT_TRUE(rig.spindle.settled());
   EXPECT_NEAR((rig.position - from) / 4096.0, 5.0, 0.005);
+}
+
+TEST(Spindle, whose_drive_went_away_in_a_turn_by_an_angle_does_not_turn_on_when_it_is_back) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::orient, 0.0);
+  rig.run(5000);
+  ASSERT_TRUE(rig.spindle.oriented());
+  rig.spindle.turn(36'000.0, 100.0);
+  rig.run(1000);
+  rig.away = true;
+  rig.run(100);
+  rig.away = false;
+  rig.run(3000);
+  EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
+  EXPECT_EQ(rig.last_command, 0.0) << "what turns yet is what coasts";
+  ASSERT_EQ(rig.events.size(), 1u);
+  EXPECT_EQ(rig.events[0].number, alarm::kSpindleOrientTimeout);
+}
+
+TEST(Spindle, that_turns_by_an_angle_is_bounded_by_its_chuck) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::orient, 0.0);
+  rig.run(5000);
+  rig.set("limit", 60.0);
+  rig.spindle.turn(3600.0, 600.0);
+  double fastest = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    rig.cycle();
+    fastest = std::max(fastest, std::abs(rig.last_command));
+  }
+  EXPECT_NEAR(fastest, 60.0, 1e-6);
 }
 
 TEST(Spindle, names_what_keeps_it_from_its_speed_or_angle) {

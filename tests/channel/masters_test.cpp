@@ -356,8 +356,10 @@ TEST(ThreadProgram, is_left_to_where_its_tool_came_from) {
     const char* infeed;
     double thread_x, left_x;
   };
-  for (const Case& c : {Case{"G0 X10\nG0 X5\nG0 X5.5\n", 5.5, 7.5},
-                        Case{"G0 X-10\nG0 X5\nG0 X4.5\n", 4.5, 2.5}, Case{"G0 X0.5\n", 0.5, 0.5}}) {
+  for (const Case& c :
+       {Case{"G0 X10\nG0 X5\nG0 X5.1\n", 5.1, 7.1}, Case{"G0 X-10\nG0 X5\nG0 X4.9\n", 4.9, 2.9},
+        Case{"G0 X0.1\n", 0.1, 0.1},
+        Case{"G0 X10\nG0 X3\nG0 X4\n", 4.0, 2.0}}) {  // into a bore, then a pass into its wall
     Rig rig(std::string("S600 M3\n") + c.infeed + "G33 Z-60 K1.5\nM30\n", "G27", 0.5, RigKind::infeed);
     rig.start();
     ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; })) << rig.alarm_list();

@@ -57,7 +57,7 @@ std::optional<text::Finding> Forecast::drive(path::Element element, const progra
 std::optional<text::Finding> Forecast::tap() {
   const std::vector<TapCommands::Leg> legs = tap_.legs();
   tap_.clear();
-  std::optional<text::Finding> found = tap_leaves_travel(config_, axes_, at_, legs);
+  std::optional<text::Finding> found = undrivable_tap(config_, axes_, at_, legs);
   rest();
   for (const TapCommands::Leg& leg : legs) {
     std::optional<text::Finding> flaw = drive(leg.element, leg.command);

@@ -6,8 +6,8 @@
 
 namespace servogate::channel {
 
-/// From which side each axis came to a thread: an outer and an inner one are left to opposite sides. Shorter
-/// moves than the way off the thread (setting a depth, taking up backlash) say nothing. Not real-time safe.
+/// From which side each axis came to a thread, by its last move: an outer and an inner one are left to
+/// opposite sides. Moves below 0.2 mm (taking up backlash) say nothing. Not real-time safe.
 class Infeed {
  public:
   explicit Infeed(const path::Config& config) : config_(config) {}
@@ -16,8 +16,8 @@ class Infeed {
   /// A motion that is no thread.
   void take(const path::Vector& from, const path::Vector& to) {
     for (std::size_t i = 0; i < side_.size(); ++i) {
-      const double d = to[i] - from[i], least = std::abs(config_.threads.retract[i]);
-      if (least > 0.0 && std::abs(d) >= least) side_[i] = d > 0.0 ? 1 : -1;
+      const double d = to[i] - from[i];
+      if (config_.threads.retract[i] != 0.0 && std::abs(d) >= kLeast) side_[i] = d > 0.0 ? 1 : -1;
     }
   }
   /// Which axes leave the thread against their sign, and which not at all: those that have not come to it.
@@ -33,6 +33,7 @@ class Infeed {
   }
 
  private:
+  static constexpr double kLeast = 0.2;  // mm
   path::Config config_;
   std::array<int, path::kMaxAxes> side_{};
 };

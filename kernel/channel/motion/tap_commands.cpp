@@ -116,15 +116,29 @@ TapCommands::Taken TapCommands::leg(const program::Command& command, PathElement
   return Taken::complete;
 }
 
-std::optional<text::Finding> tap_leaves_travel(const path::Config& config, const AxisMap& axes,
-                                               const path::Vector& from,
-                                               const std::vector<TapCommands::Leg>& legs) {
+std::optional<text::Finding> undrivable_tap(const path::Config& config, const AxisMap& axes,
+                                            const path::Vector& from,
+                                            const std::vector<TapCommands::Leg>& legs) {
   const path::Threads& threads = config.threads;
   path::Vector begin = from;
+  double next_rpm = 0.0;
   for (const TapCommands::Leg& leg : legs) {
     const path::Vector d = way(begin, leg.element.to);
     const double whole = length(d);
     begin = leg.element.to;
+    // How fast it goes in is seen when it begins; how fast the ways behind it go is ordered by the program.
+    const double turns_s = std::exchange(next_rpm, std::abs(leg.element.lock.turn_rpm)) / 60.0;
+    for (std::size_t i = 0; whole > kSamePlace && i < axes.machine.size(); ++i) {
+      const double speed = leg.element.lock.per_turn * turns_s * std::abs(d[i]) / whole,
+                   most = config.limits[i].velocity;
+      if (!(speed > most)) continue;
+      text::Finding finding;
+      finding.entry = &texts::kTapTooFast;
+      finding.arguments = {i < axes.letters.size() ? axes.letters[i] : std::to_string(i + 1),
+                           text::number(60.0 * speed, 0), text::number(60.0 * turns_s, 0),
+                           text::number(60.0 * most, 0)};
+      return finding;
+    }
     if (leg.element.lock.kind == path::Lock::Kind::tap_out || whole <= kSamePlace) continue;
     for (std::size_t i = 0; i < axes.machine.size(); ++i) {
       const double rest = begin[i] + d[i] / whole * threads.tap_overshoot;

@@ -45,10 +45,11 @@ class TapCommands {
   const text::Entry* flaw_ = nullptr;
 };
 
-/// A tap that would leave the travel within what it may go beyond its depth: which axis, and why; nullopt: it
-/// does not. The place is for the caller to fill in.
-std::optional<text::Finding> tap_leaves_travel(const path::Config& config, const AxisMap& axes,
-                                               const path::Vector& from,
-                                               const std::vector<TapCommands::Leg>& legs);
+/// A tap that would leave the travel within what it may go beyond its depth, or whose ways behind the first
+/// one are faster than an axis: which axis, and why; nullopt: it is none. The place is for the caller to fill
+/// in.
+std::optional<text::Finding> undrivable_tap(const path::Config& config, const AxisMap& axes,
+                                            const path::Vector& from,
+                                            const std::vector<TapCommands::Leg>& legs);
 
 }  // namespace servogate::channel

@@ -14,6 +14,11 @@ inline constexpr text::Entry kTapLegs{
     "channel.tap-legs",
     "the tap goes in and back more than {0} times: break chips less often, or leave the hole between passes",
     "метчик входит и возвращается больше {0} раз: реже ломайте стружку или выводите метчик из отверстия"};
+inline constexpr text::Entry kTapTooFast{"channel.tap-too-fast",
+                                         "the tap leaves its hole at {1} mm/min with its spindle at {2} rpm, "
+                                         "{0} goes at most at {3} mm/min: a lower speed for the way out",
+                                         "метчик выходит из отверстия на {1} мм/мин при {2} об/мин шпинделя, "
+                                         "{0} движется не быстрее {3} мм/мин: снизьте частоту на выход"};
 inline constexpr text::Entry kTapLeavesTravel{
     "channel.tap-leaves-travel",
     "the tap may go {1} mm beyond its depth with its spindle (tap_overshoot): {0} would be at {2}, its "

@@ -335,6 +335,11 @@ void MasterMotion::step(const MasterEstimate& master, const MasterReading& readi
   braking_ = reading.braking;
   if (leave && (!taps() || phase_ == Phase::waiting)) give_up();
   if (leave && phase_ == Phase::locked) halt_ = true;
+  // In its lead-in it does not go with the angle yet.
+  if (leave && taps() && phase_ == Phase::running_in) {
+    halt_ = true;
+    give_up();
+  }
   if (phase_ == Phase::running_in || phase_ == Phase::locked) watch(master, reading);
   switch (phase_) {
     case Phase::waiting:

@@ -63,8 +63,7 @@ class MasterMotion {
   /// The axes go where the spindle goes: a stop of theirs would part the tap from it. Bounded: the spindle
   /// stands in time, or the tap is given up.
   bool bound() const noexcept {
-    const bool with_it = phase_ == Phase::running_in || phase_ == Phase::locked;
-    return taps() && (with_it || (phase_ == Phase::leaving && fault_ == MasterFault::lost));
+    return taps() && (phase_ == Phase::locked || (phase_ == Phase::leaving && fault_ == MasterFault::lost));
   }
   MasterFault fault() const noexcept { return fault_; }
   double value() const noexcept { return value_; }

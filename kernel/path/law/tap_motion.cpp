@@ -104,7 +104,7 @@ double MasterMotion::least_of_tap() const noexcept {
 
 /// Where it would rest if it were given up now.
 void MasterMotion::watch_depth() noexcept {
-  if (leg_ == 0 && state_.s < -tap_overshoot_) fail(MasterFault::reversed, state_.v, 0.0);
+  if ((leg_ == 0 || halt_) && state_.s < -tap_overshoot_) fail(MasterFault::reversed, state_.v, 0.0);
   if (state_.v <= 0.0 || (last_leg() && !halt_)) return;
   // One cycle passes before it slows down.
   const double beyond =
