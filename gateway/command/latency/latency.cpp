@@ -78,9 +78,13 @@ json histogram_json(const report::Histogram& h) {
           {"p999_us", q.p999},  {"max_us", q.max}, {"bands", bands_of(h)}};
 }
 
-void print_histogram(const std::string& name, const json& h) {
+void print_quantiles(const std::string& name, const json& h) {
   const auto number = [&](const char* key) { return text::number(h[key].get<double>(), 1); };
   say(kHead, {name, number("p50_us"), number("p99_us"), number("p999_us"), number("max_us")});
+}
+
+void print_histogram(const std::string& name, const json& h) {
+  print_quantiles(name, h);
   const double all = std::max(1.0, h["count"].get<double>());
   for (const json& band : h["bands"]) {
     const double count = band["count"].get<double>();
@@ -136,18 +140,15 @@ json facts_of(const LatencyOptions& o, const WakeUp& measured) {
   return out;
 }
 
-void print_facts(const LatencyOptions& o, const WakeUp& measured, const json& facts) {
+void print_facts(const WakeUp& measured, const json& facts) {
   print_histogram(text::both("wake-up", "пробуждение"), facts["wake_up"]);
   if (facts.contains("sync")) print_histogram("SYNC", facts["sync"]);
   if (facts.contains("round_trip"))
     print_histogram(text::both("SYNC to process data", "от SYNC до данных процесса"), facts["round_trip"]);
   if (const auto machine = facts.find("machine"); machine != facts.end()) {
     print_histogram(text::both("whole cycle", "весь цикл"), (*machine)["cycle"]);
-    for (const json& phase : (*machine)["phases"]) {
-      const auto number = [&](const char* key) { return text::number(phase[key].get<double>(), 1); };
-      say(kHead, {"  " + phase["phase"].get<std::string>(), number("p50_us"), number("p99_us"),
-                  number("p999_us"), number("max_us")});
-    }
+    for (const json& phase : (*machine)["phases"])
+      print_quantiles("  " + phase["phase"].get<std::string>(), phase);
   }
   if (measured.missed > 0)
     say(kMissed, {std::to_string(measured.missed), std::to_string(measured.late.count())});
@@ -162,7 +163,6 @@ void print_facts(const LatencyOptions& o, const WakeUp& measured, const json& fa
                fit_words(fit_of(measured.late.max(), static_cast<std::int64_t>(cycle * 1e3)))});
   for (const cycle::RealtimeRefusal& r : measured.refusals) say(kRefused, {r.what, r.cause, r.remedy});
   for (const Advice& a : advice_for("")) say(kAdvice, {a.what, a.remedy});
-  (void)o;
 }
 
 int finish(const LatencyOptions& o, const WakeUp& measured, const BusTimes* bus,
@@ -173,7 +173,7 @@ int finish(const LatencyOptions& o, const WakeUp& measured, const BusTimes* bus,
     facts["round_trip"] = histogram_json(bus->round_trip);
   }
   if (machine != nullptr) facts["machine"] = phases_json(*machine);
-  o.json ? static_cast<void>(print_exact(facts.dump(1))) : print_facts(o, measured, facts);
+  o.json ? static_cast<void>(print_exact(facts.dump(1))) : print_facts(measured, facts);
   return fit_of(measured.late.max(), static_cast<std::int64_t>(o.cycle_us * 1e3)) == Fit::no ? kAlarm : kDone;
 }
 
