@@ -188,6 +188,16 @@ TEST(Forecast, refuses_a_tap_that_does_not_come_back_as_the_run_would) {
   EXPECT_EQ(refused(m, {in, tap_to(-20), program::Rapid{}}), "channel.tap-open");
 }
 
+TEST(Forecast, refuses_a_tap_whose_way_out_is_faster_than_its_axis) {
+  Machine m = machine(1000.0, 10000.0);
+  const program::Spindle in = turning(program::SpindleMode::cw);
+  program::Spindle out = turning(program::SpindleMode::ccw);
+  m.path.limits[2].velocity = 1.25 * out.speed / 60.0;
+  EXPECT_EQ(refused(m, {in, tap_to(-20), out, tap_to(0)}), "");
+  out.speed *= 1.01;
+  EXPECT_EQ(refused(m, {in, tap_to(-20), out, tap_to(0)}), "channel.tap-too-fast");
+}
+
 TEST(Forecast, refuses_a_tap_without_room_beyond_its_depth_for_a_spindle_that_turns_round_late) {
   Machine m = machine(1000.0, 10000.0);
   m.path.threads.travel_min[2] = -22.0;

@@ -11,6 +11,7 @@ namespace servogate::channel {
 namespace {
 
 constexpr double kSamePlace = 1e-6;  // mm
+constexpr double kRounding = 1e-9;
 
 path::Vector way(const path::Vector& from, const path::Vector& to) {
   path::Vector d{};
@@ -131,7 +132,7 @@ std::optional<text::Finding> undrivable_tap(const path::Config& config, const Ax
     for (std::size_t i = 0; whole > kSamePlace && i < axes.machine.size(); ++i) {
       const double speed = leg.element.lock.per_turn * turns_s * std::abs(d[i]) / whole,
                    most = config.limits[i].velocity;
-      if (!(speed > most)) continue;
+      if (!(speed > most * (1.0 + kRounding))) continue;
       text::Finding finding;
       finding.entry = &texts::kTapTooFast;
       finding.arguments = {i < axes.letters.size() ? axes.letters[i] : std::to_string(i + 1),
