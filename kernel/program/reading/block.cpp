@@ -25,15 +25,17 @@ void classify(const Lexis& lexis, Block& block) {
   const bool bracket = lexis.bracket == Bracket::own_form && line[block.body] == '(';
   block.kind = bracket ? BlockKind::own_form : BlockKind::words;
   const auto bit = [](char c) { return std::uint64_t{1} << (static_cast<unsigned char>(c) & 63u); };
-  const std::uint64_t marks = bit('"') | bit('=') | bit(lexis.comment) | bit(lexis.comment_pair);
+  const bool comments = lexis.bracket == Bracket::comment;
+  const std::uint64_t marks = bit('"') | bit('=') | bit(lexis.comment) | bit(lexis.comment_pair) |
+                              (comments ? bit('(') | bit(')') : 0u);
   bool quoted = false;
   int depth = 0;  // of brackets that are comments
-  const bool comments = lexis.bracket == Bracket::comment;
-  for (std::size_t i = block.body; i < line.size(); ++i) {
+  const std::size_t size = line.size();
+  for (std::size_t i = block.body; i < size; ++i) {
     const char c = line[i];
+    if ((marks & bit(c)) == 0) continue;  // most characters, in one step
     if (comments && (c == '(' || c == ')')) depth = std::max(0, depth + (c == '(' ? 1 : -1));
     if (depth > 0) continue;
-    if ((marks & bit(c)) == 0) continue;  // most characters, in one step
     if (c == '"') quoted = !quoted;
     if (quoted) continue;
     if (c == '=' && lexis.equals_is_own_form) block.kind = BlockKind::own_form;

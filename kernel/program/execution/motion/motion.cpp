@@ -138,7 +138,8 @@ Position Motion::target_of(const BlockWords& words) {
   if (words.machine_zero)
     for (int a = 0; a < machine_.axis_count(); ++a) programmed[at(a)] = frame.to_programmed(to, a);
   for (int a = 0; a < machine_.axis_count(); ++a)
-    if (words.axis[at(a)] != nullptr || turned) frames_.check_axis(a, to[at(a)], column_of(block_, a));
+    if (const Word* word = words.axis[at(a)]; word != nullptr || turned)
+      frames_.check_axis(a, to[at(a)], word != nullptr ? word->column : column_of(block_, a));
   return to;
 }
 

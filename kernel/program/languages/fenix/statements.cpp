@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
@@ -158,9 +159,12 @@ LineMark mark(std::string_view line, std::size_t pos) {
     if (number < 0) return {};
     return {Kind::definition, line[pos] == 'L' ? number : kFirstCycle + number};
   }
+  const auto bit = [](char c) { return std::uint64_t{1} << (static_cast<unsigned char>(c) & 63u); };
+  const std::uint64_t marks = bit(';') | bit('/') | bit('(') | bit(')') | bit('$') | bit('H') | bit('M');
   int depth = 0;
   for (std::size_t i = pos; i < line.size(); ++i) {
     const char c = line[i];
+    if ((marks & bit(c)) == 0) continue;  // most characters, in one step
     if (c == ';' || (c == '/' && i + 1 < line.size() && line[i + 1] == '/')) break;
     depth += c == '(' ? 1 : c == ')' ? -1 : 0;
     if (c == '$')

@@ -89,8 +89,10 @@ enum : std::size_t {
   argument_count = argument_order + 30,
   argument_g = argument_count + 3,
   override_told,  ///< 1: the machine knows that the override of the feed does not count
+  notation,       ///< MD10884 as the run has found it: one of the three below
   places,
 };
+inline constexpr double kNotationUnknown = 0.0, kStandard = 1.0, kCalculator = 2.0;
 }  // namespace own
 
 inline double& value(State& state, std::size_t place) { return state.own[place]; }

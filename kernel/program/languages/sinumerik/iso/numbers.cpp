@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "kernel/program/languages/sinumerik/iso/iso.hpp"
 
 /// Numbers without a point in standard notation (MD10884 = 0; specification 1.5, tables 1-1 and 2-1).
@@ -31,14 +33,23 @@ Factors factors_of(const Execution& run) {
 }  // namespace
 
 void scale_numbers(Execution& run, const BlockWords& words) {
-  if (setting(run, "MD10884") != 0.0) return;
+  // Machine data last as long as the run: what every block asks for is looked up once.
+  double& notation = value(run.state(), own::notation);
+  if (notation == own::kNotationUnknown)
+    notation = setting(run, "MD10884") != 0.0 ? own::kCalculator : own::kStandard;
+  if (notation == own::kCalculator) return;
   if (words.instead == dwell) return;  // counts ms in X, U and P
-  const Factors f = factors_of(run);
   Block& block = run.block();
+  std::optional<Factors> factors;
   for (std::size_t i = 0; i < block.count; ++i) {
     Word& word = block.words[i];
     if (word.value.fraction || word.value.expression != 0) continue;
     if (word.letter == 'K' && value(run.state(), own::hole) != 0.0) continue;  // repeats
+    if (word.meaning != Meaning::axis && word.meaning != Meaning::centre_of &&
+        word.meaning != Meaning::radius && word.meaning != Meaning::feed)
+      continue;
+    if (!factors) factors = factors_of(run);
+    const Factors& f = *factors;
     switch (word.meaning) {
       case Meaning::axis:
         word.value.number *= word.axis >= 0 && run.machine().rotary(word.axis) ? f.rotary : f.linear;
@@ -47,10 +58,8 @@ void scale_numbers(Execution& run, const BlockWords& words) {
       case Meaning::radius:
         word.value.number *= f.linear;
         break;
-      case Meaning::feed:
-        word.value.number *= f.feed;
-        break;
       default:
+        word.value.number *= f.feed;
         break;
     }
   }
