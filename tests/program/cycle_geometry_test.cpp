@@ -304,9 +304,10 @@ TEST(CycleGeometry, of_grooves_of_Fenix_is_cut_to_the_bottom_at_each_place) {
 /// G81, G810 to G812 and G820 to G823: one hole.
 TEST(CycleGeometry, of_holes_of_Fenix_goes_in_its_passes_to_the_bottom_and_back_to_its_level) {
   Random random;
-  constexpr int kCycles[] = {810, 811, 812, 820, 821, 822, 823};
-  for (int n = 0; n < 300; ++n) {
-    const int cycle = kCycles[random.whole(0, 6)];
+  constexpr int kCycles[] = {81, 810, 811, 812, 820, 821, 822, 823};
+  for (int n = 0; n < 340; ++n) {
+    const int cycle = kCycles[random.whole(0, 7)];
+    const bool alone = cycle == 81;  // neither approaches nor leaves
     const bool deep = cycle == 812 || cycle >= 822, bores = cycle >= 820, breaks = !deep && random.coin();
     const double approach = random.mm(0.5, 3.0), depth = -random.mm(2.0, 30.0),
                  retreat = approach + random.mm(0.5, 4.0);
@@ -318,14 +319,14 @@ TEST(CycleGeometry, of_holes_of_Fenix_goes_in_its_passes_to_the_bottom_and_back_
     const std::string program =
         "%\nN1 G90 G27 G94 F1500 S300 M3\n" +
         (breaks ? "N2 G67(" + digits(next) + "," + digits(random.mm(0.2, 1.0)) + ")\n" : "N2 G68\n") +
-        "N3 G0 X20 Z60\nN4 " + call + ")\n";
+        "N3 G0 X20 Z" + (alone ? digits(approach) : std::string("60")) + "\nN4 " + call + ")\n";
     const auto ways = ways_of("fenix", fenix_lathe(), program);
     auto all = strokes(ways, kX, kZ);
     for (Stroke& s : all)  // the tool leaves the wall and comes back to the hole
       if (bores && std::abs(s.a1 - s.a0) < 1e-9) s.a0 = s.a1 = 10.0;
     const double step = deep || breaks ? std::max(first, next) : 1e9;
     expect_bottoms(Holes(approach, step, std::abs(shift)), all, {10.0}, depth, program);
-    EXPECT_NEAR(ways.back().to[kZ], retreat, kTolerance) << program;
+    EXPECT_NEAR(ways.back().to[kZ], alone ? depth : retreat, kTolerance) << program;
     if (::testing::Test::HasFailure()) return;
   }
 }
@@ -379,6 +380,40 @@ TEST(CycleGeometry,
     expect_bottoms(Holes(level, pecks ? peck : 1e9), strokes(ways, 0, 2), {x, x + dx, x + 2 * dx, x + 3 * dx},
                    depth, program);
     EXPECT_NEAR(ways.back().to[2], to_r ? level : initial, kTolerance) << program;
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+/// G98 and G99 may change from hole to hole: each is left to the plane that its own block chose.
+TEST(CycleGeometry, of_a_row_of_holes_leaves_each_to_the_plane_of_its_block) {
+  Random random;
+  constexpr int kCycles[] = {73, 81, 82, 83, 85, 86, 89};
+  for (int n = 0; n < 150; ++n) {
+    const int cycle = kCycles[random.whole(0, 6)], holes = random.whole(2, 6);
+    const bool pecks = cycle == 73 || cycle == 83;
+    const double initial = 20.0, level = random.mm(1.0, 5.0), depth = -random.mm(2.0, 30.0),
+                 peck = random.mm(1.5, 7.0);
+    std::string program = "S500 M3 F500\nG90 G00 X0. Y0. Z" + digits(initial) + "\n";
+    std::vector<double> places, planes;
+    for (int i = 0; i < holes; ++i) {
+      const bool to_r = random.coin();
+      planes.push_back(to_r ? level : initial);
+      places.push_back(random.mm(-5.0, 5.0) + 15.0 * (i + 1));
+      program += to_r ? "G99 " : "G98 ";
+      if (i == 0)
+        program += "G" + std::to_string(cycle) + " Y5. Z" + digits(depth) + " R" + digits(level) +
+                   (pecks ? " Q" + digits(peck) : "") + " F500 ";
+      program += "X" + digits(places.back()) + "\n";
+    }
+    const auto ways = ways_of("sinumerik-808d", iso_mill(), program + "G80\nG00 X200.\n");
+    expect_bottoms(Holes(level, pecks ? peck : 1e9), strokes(ways, 0, 2), places, depth, program);
+    std::size_t left = 0;
+    for (const Way& w : ways) {  // the way to the next hole begins on the plane of the one before
+      if (std::abs(w.to[0] - w.from[0]) < 1e-9 || std::abs(w.from[0]) < 1e-9) continue;
+      ASSERT_LT(left, planes.size()) << program;
+      EXPECT_NEAR(w.from[2], planes[left++], kTolerance) << program;
+    }
+    EXPECT_EQ(left, planes.size()) << program;
     if (::testing::Test::HasFailure()) return;
   }
 }

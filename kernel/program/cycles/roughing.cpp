@@ -37,6 +37,13 @@ std::vector<Point> chords(const Roughing& work) {
   return out;
 }
 
+/// Of the depths: the side on which the tool works.
+double middle(const std::vector<Point>& points) {
+  double sum = 0.0;
+  for (const Point& p : points) sum += p.y;
+  return sum / static_cast<double>(points.size());
+}
+
 /// From where to where a pass at a level is free of the contour.
 struct Span {
   double from, to;
@@ -48,7 +55,7 @@ class Passes {
       : run_(run), work_(work), points_(chords(work)), start_(turned(work.start)) {
     forward_ = points_.back().x < points_.front().x ? -1.0 : 1.0;
     double deepest = points_.front().y;
-    in_ = middle() < start_.y ? -1.0 : 1.0;
+    in_ = middle(points_) < start_.y ? -1.0 : 1.0;
     for (const Point& p : points_) deepest = in_ < 0.0 ? std::min(deepest, p.y) : std::max(deepest, p.y);
     bottom_ = deepest;
     const Point allowed = turned(work.allowance);
@@ -71,11 +78,6 @@ class Passes {
 
  private:
   Point turned(Point p) const { return work_.along_first ? p : Point{p.y, p.x}; }
-  double middle() const {
-    double sum = 0.0;
-    for (const Point& p : points_) sum += p.y;
-    return sum / static_cast<double>(points_.size());
-  }
   bool below(const Point& p, double level) const { return (p.y - level) * in_ > -kEps; }
   /// The pass begins beside the material, where the tool stood.
   bool open(double level) const { return below(points_.front(), level); }
@@ -151,6 +153,19 @@ RoughingFault check_roughing(const Roughing& work) {
     if (along || across) return {true, along == work.along_first ? 0 : 1};
   }
   return {};
+}
+
+StartInside check_start(const Roughing& work) {
+  Roughing bare = work;
+  bare.allowance = {};
+  const std::vector<Point> points = chords(bare);
+  const double start = work.along_first ? work.start.y : work.start.x;
+  const bool above = middle(points) < start;
+  const auto [low, high] =
+      std::minmax_element(points.begin(), points.end(), [](Point a, Point b) { return a.y < b.y; });
+  const double reach = above ? high->y : low->y;
+  const bool inside = above ? start < reach - kEps : start > reach + kEps;
+  return {inside, work.along_first ? 1 : 0, reach};
 }
 
 void follow_contour(Execution& run, const std::vector<TurnedElement>& contour, Point shift) {

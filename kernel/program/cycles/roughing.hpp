@@ -39,6 +39,15 @@ struct RoughingFault {
 };
 RoughingFault check_roughing(const Roughing& work);
 
+/// The tool returns to its start at rapid, across the contour and then along it: the start lies beside the
+/// whole contour, or the way back would pass through the work.
+struct StartInside {
+  bool inside = false;
+  int axis = 0;        ///< 0 the first, 1 the second
+  double reach = 0.0;  ///< of the contour along this axis, towards the start
+};
+StartInside check_start(const Roughing& work);
+
 /// Passes down to the contour with its allowance, then once along it, and back to where the tool stood.
 /// Throws where there are too many.
 void rough_contour(Execution& run, const Roughing& work);

@@ -7,7 +7,10 @@
 namespace servogate::program::sinumerik::iso {
 namespace {
 
-constexpr std::uint32_t bit_of(char letter) { return is_capital(letter) ? 1u << (letter - 'A') : 0u; }
+constexpr std::uint32_t kCommaBit = 1u << 26;  ///< of the words ,A ,C and ,R
+constexpr std::uint32_t bit_of(char letter) {
+  return is_capital(letter) ? 1u << (letter - 'A') : letter == ',' ? kCommaBit : 0u;
+}
 
 /// B is an output to the PLC where it is no axis (specification 12.3).
 void without_axis(Execution& run, BlockWords& words, const Word& word) {
@@ -80,9 +83,21 @@ void judge_plane(const Execution& run, const BlockWords& words) {
 constexpr std::uint32_t kSeldom = bit_of('P') | bit_of('Q') | bit_of('L') | bit_of('H') | bit_of('D') |
                                   bit_of('E') | bit_of('O') | bit_of('T') | bit_of('M');
 
-/// What `instead` does not take in a block without one.
-bool stray_left(const BlockWords& words, std::uint32_t letters, std::uint32_t taken) {
-  return words.for_instead && (letters & ~taken & kSeldom & ~bit_of('T') & ~bit_of('M')) != 0;
+/// Letters that have a meaning beside certain words only.
+constexpr std::uint32_t kOnlyTaken = kSeldom & ~bit_of('T') & ~bit_of('M');
+
+/// Those of them that this block takes though nothing stands in place of its motion.
+std::uint32_t taken(const Execution& run, const BlockWords& words, std::uint32_t letters) {
+  if ((letters & kOnlyTaken) == 0) return 0;
+  const State& state = run.state();
+  std::uint32_t taken = 0;
+  if (state.modes.motion == Function::thread && words.axes > 0) taken |= bit_of('Q');
+  if (words.statement_count > 0) taken |= bit_of('P') | bit_of('L');
+  if (value(state, own::length_sign) != 0.0) taken |= bit_of('H');
+  if (!run.machine().turns()) taken |= bit_of('D');
+  if ((letters & bit_of('G')) != 0 && (letters & bit_of('P')) != 0 && words.count == nullptr)
+    taken |= bit_of('P');
+  return taken;
 }
 
 }  // namespace
@@ -108,16 +123,9 @@ void arrange(Execution& run, BlockWords& words) {
   arrange_length(run, words);
   if (words.instead == nullptr) {
     arrange_polar(run, words);
-    arrange_angle(run, words);
+    if ((letters & kCommaBit) != 0) arrange_angle(run, words);
     arrange_circle(run, words);
-    std::uint32_t taken = 0;
-    if (state.modes.motion == Function::thread && words.axes > 0) taken |= bit_of('Q');
-    if (words.statement_count > 0) taken |= bit_of('P') | bit_of('L');
-    if (value(state, own::length_sign) != 0.0) taken |= bit_of('H');
-    if (!run.machine().turns()) taken |= bit_of('D');
-    if (find(run.block(), 'G') != nullptr && find(run.block(), 'P') != nullptr && words.count == nullptr)
-      taken |= bit_of('P');
-    words.for_instead = stray_left(words, letters, taken);
+    words.for_instead = words.for_instead && (letters & ~taken(run, words, letters) & kOnlyTaken) != 0;
   }
   arrange_override(run);
   if (run.contour().engaged()) count_dummy_blocks(run, words);

@@ -53,6 +53,7 @@ class Reader {
            {name_, text::both("another plane than G18", "плоскость, кроме G18")});
     at_ = {frames.programmed[at(z_)], frames.programmed[at(x_)]};
     motion_ = run.state().modes.motion;
+    dimension_ = run.state().modes.dimension;
   }
 
   std::vector<TurnedElement> read(Lines& lines) {
@@ -79,15 +80,36 @@ class Reader {
     if (setting(run_, "MD10884") == 0.0 && !v.fraction)
       v.number *= run_.state().modes.unit == Function::inch ? 0.0001 : 0.001;
     const double written = run_.numbers().length(w.axis, v);
-    const bool adds = v.dimension == Dimension::as_modes
-                          ? run_.state().modes.dimension == Function::incremental
-                          : v.dimension == Dimension::incremental;
+    const bool adds = v.dimension == Dimension::as_modes ? dimension_ == Function::incremental
+                                                         : v.dimension == Dimension::incremental;
     return adds ? from + written : written;
   }
   double size(const Word& w) const {
     const double unit = run_.state().modes.unit == Function::inch ? 25.4 : 1.0;
     const bool standard = setting(run_, "MD10884") == 0.0 && !w.value.fraction;
     return w.value.number * unit * (standard ? (unit == 1.0 ? 0.001 : 0.0001) : 1.0);
+  }
+
+  /// G words that may stand in a contour (specification 18.4): the motions, and what lasts.
+  static bool in_contour(Function f) {
+    switch (f) {
+      case Function::rapid:
+      case Function::line:
+      case Function::arc_cw:
+      case Function::arc_ccw:
+      case Function::compensation_off:
+      case Function::compensation_left:
+      case Function::compensation_right:
+      case Function::absolute:
+      case Function::incremental:
+      case Function::feed_minute:
+      case Function::feed_revolution:
+      case Function::surface_speed:
+      case Function::revolutions:
+        return true;
+      default:
+        return false;
+    }
   }
 
   void take(Lines& lines) {
@@ -97,13 +119,14 @@ class Reader {
       const Word& w = block_.words[i];
       if (w.meaning == Meaning::g) {
         const Function f = w.g == nullptr ? Function::later : w.g->function;
-        if (f != Function::rapid && f != Function::line && f != Function::arc_cw && f != Function::arc_ccw &&
-            f != Function::compensation_off && f != Function::compensation_left &&
-            f != Function::compensation_right)
+        if (w.g != nullptr && w.g->motion == dwell) return;  // its words are a time
+        if (!in_contour(f))
           fail_in(Wrong::contour_word, line_, w.column, {name_, word_text(run_.dialect(), block_, w)});
-        if (f <= Function::arc_ccw) motion_ = f;
+        if (f >= Function::rapid && f <= Function::arc_ccw) motion_ = f;
+        if (f == Function::absolute || f == Function::incremental) dimension_ = f;
         continue;
       }
+      if (w.meaning == Meaning::m && w.value.number != 98.0 && w.value.number != 99.0) continue;
       if (w.meaning == Meaning::axis && (w.axis == x_ || w.axis == z_)) {
         (w.axis == x_ ? to.y : to.x) = coordinate(w, w.axis == x_ ? at_.y : at_.x);
         both[w.axis == x_ ? 0 : 1] = moves = true;
@@ -192,7 +215,7 @@ class Reader {
   std::string name_;
   int x_ = -1, z_ = -1;
   Point at_;
-  Function motion_ = Function::rapid;
+  Function motion_ = Function::rapid, dimension_ = Function::absolute;
   Block block_;
   std::uint32_t line_ = 0;
   std::vector<TurnedElement> contour_;
@@ -240,16 +263,34 @@ bool stores(Execution& run, const BlockWords& words, char depth) {
   return true;
 }
 
-void rough(Execution& run, const BlockWords& words, bool along) {
-  if (stores(run, words, along ? 'U' : 'W')) return;
-  begin(run, words, "PQUWFSTM");
-  Lines lines = lines_of(run, words);
+/// A contour and where the cycle starts.
+Roughing cycle_of(Execution& run, const BlockWords& words, Lines& lines) {
   Roughing work;
   work.name = g_word(run, words);
   work.column = column(words);
   work.start = stands(run);
   work.contour = Reader(run, words).read(lines);
   if (work.contour.empty()) fail(Wrong::axis_alone, work.column, {work.name});
+  return work;
+}
+
+/// The start is judged before anything moves: from inside of the contour the way back would cut.
+void judge_start(const Execution& run, const Roughing& work) {
+  const StartInside start = check_start(work);
+  if (!start.inside) return;
+  const FramesState& frames = run.state().frames;
+  const MachineModel::Axis& axis = run.machine().axes[at(start.axis == 0 ? frames.axis1 : frames.axis2)];
+  const double shown = axis.diameter ? 2.0 : 1.0;
+  fail(Wrong::start_inside, work.column,
+       {work.name, axis.letter, text::number(shown * (start.axis == 0 ? work.start.x : work.start.y)),
+        text::number(shown * start.reach)});
+}
+
+void rough(Execution& run, const BlockWords& words, bool along) {
+  if (stores(run, words, along ? 'U' : 'W')) return;
+  begin(run, words, "PQUWFSTM");
+  Lines lines = lines_of(run, words);
+  Roughing work = cycle_of(run, words, lines);
   work.along_first = along;
   work.depth = memory(run, own::turning_depth, "ZSFI30", 0.001);
   work.retract = memory(run, own::turning_retract, "ZSFI31", 0.001);
@@ -257,6 +298,7 @@ void rough(Execution& run, const BlockWords& words, bool along) {
   work.pockets = lines.both_axes;
   if (const RoughingFault fault = check_roughing(work); fault.turns_back)
     fail(Wrong::contour_pocket, work.column, {work.name, fault.axis == 0 ? "Z" : "X"});
+  judge_start(run, work);
   rough_contour(run, work);
 }
 
@@ -281,8 +323,10 @@ void repeat_pattern(Execution& run, const BlockWords& words) {
   }
   begin(run, words, "PQUWFSTM");
   Lines lines = lines_of(run, words);
-  const Point start = stands(run);
-  const std::vector<TurnedElement> contour = Reader(run, words).read(lines);
+  const Roughing work = cycle_of(run, words, lines);
+  judge_start(run, work);
+  const Point start = work.start;
+  const std::vector<TurnedElement>& contour = work.contour;
   const double x = memory(run, own::pattern_x, "ZSFI32", 0.001),
                z = memory(run, own::pattern_z, "ZSFI33", 0.001);
   const int passes = static_cast<int>(memory(run, own::pattern_passes, "ZSFI34", 1.0));
@@ -311,7 +355,8 @@ void finish(Execution& run, const BlockWords& words) {
                    {});
     return;
   }
-  const Lines lines = lines_of(run, words);
+  Lines lines = lines_of(run, words);
+  judge_start(run, cycle_of(run, words, lines));
   value(state, own::finishing) = 1.0;
   value(state, own::finish_feed) = state.motion.feed;
   state.own[own::finish_at] = state.frames.programmed[at(a1)];

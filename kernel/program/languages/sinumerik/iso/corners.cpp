@@ -80,9 +80,6 @@ const WordRule kComma = kCommaRule;
 /// An end that the angle gives, and what stands between this motion and the next one.
 void arrange_angle(Execution& run, BlockWords& words) {
   Block& block = run.block();
-  bool any = false;
-  for (std::size_t i = 0; i < block.count; ++i) any = any || block.words[i].letter == ',';
-  if (!any) return;
   const State& state = run.state();
   const int a1 = state.frames.axis1, a2 = state.frames.axis2;
   const Function motion = state.modes.motion;

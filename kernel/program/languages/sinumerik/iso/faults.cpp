@@ -80,8 +80,11 @@ constexpr text::Entry kMessages[] = {
      "{0}: направление поворотной оси в этой версии не выбирается: задайте AC или IC"},
     {"P885", "{0}: a rotation goes about the axis across the plane: select the plane and write RPL=",
      "{0}: поворот идёт вокруг оси, перпендикулярной плоскости: выберите плоскость и задайте RPL="},
+    {"P886",
+     "{0}: the tool stands at {1}{2} and the contour reaches {1}{3}: start the cycle beside the contour",
+     "{0}: инструмент стоит на {1}{2}, а контур доходит до {1}{3}: начните цикл вне контура"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::rotation_axis) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::start_inside) + 1);
 
 }  // namespace
 

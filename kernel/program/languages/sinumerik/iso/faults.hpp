@@ -58,6 +58,7 @@ enum class Wrong {
   beside_call,
   rotary_way,
   rotation_axis,
+  start_inside,
 };
 
 std::span<const text::Entry> messages();

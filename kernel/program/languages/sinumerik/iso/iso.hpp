@@ -189,7 +189,7 @@ void spindle_dwell(Execution& run, double rotations, int column);
 
 // corners.cpp: ,C ,R ,A
 extern const WordRule kComma;
-void arrange_angle(Execution& run, BlockWords& words);
+void arrange_angle(Execution& run, BlockWords& words);  ///< of a block that has such a word
 
 // references.cpp
 void reference_return(Execution& run, const BlockWords& words);
