@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines a second from program text to canonical commands (docs/benchmarks.md).
+// Lines a second from program text to canonical commands (bench/README.md).
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -101,7 +101,7 @@ class Reader {
     if (name[0] == "axes") {
       case_.machine.axes.clear();
       for (const auto& letter : words_of(value)) case_.machine.axes.push_back(axis(letter));
-    } else if (name[0] == "travel" || name[0] == "rapid" || name[0] == "acceleration" ||
+    } else if (name[0] == "travel" || name[0] == "reference" || name[0] == "rapid" || name[0] == "acceleration" ||
                name[0] == "window_max" || name[0] == "window_coarse") {
       limits(name, words_of(value));
     } else if (name[0] == "arc_feed") {
@@ -187,6 +187,7 @@ class Reader {
         axis.acceleration = std::stod(values.at(0));
         axis.jerk = std::stod(values.at(1));
       }
+      if (name[0] == "reference") axis.reference = std::stod(values.at(0));
       if (name[0] == "travel") {
         axis.travel_min = std::stod(values.at(0));
         axis.travel_max = std::stod(values.at(1));

@@ -16,7 +16,8 @@ using Vector = ProfileVector;
 
 constexpr int kMostPasses = 10'000;
 constexpr double kEps = 1e-9, kDegree = std::numbers::pi / 180.0;
-constexpr double kSteep = 0.01;  ///< a wall that leads less far along than this is one across
+constexpr double kSteep = 0.01;        ///< a wall that leads less far along than this is one across
+constexpr double kHardlyLeans = 0.17;  ///< 80 degrees from the direction of the work
 
 Vector operator+(Vector a, Vector b) { return {a.along + b.along, a.out + b.out}; }
 Vector operator-(Vector a, Vector b) { return {a.along - b.along, a.out - b.out}; }
@@ -233,10 +234,13 @@ class Passes {
       cutter_.cut(Vector{span.from, level});
     } else if (first) {
       const Vector wall = shape_.behind(0), begin{span.from, level};
-      // Along the wall from over everything, at least so far before it.
+      // Along the wall from over everything, at least so far before it; a wall that hardly leans would lead
+      // far away.
+      const double over = (level - free_) / wall.out;
       const double way = wall.along < kSteep ? 0.0
-                                             : std::max(profile_.approach / wall.along + level / wall.out,
-                                                        (level - free_) / wall.out);
+                         : wall.along < kHardlyLeans
+                             ? over - profile_.approach / wall.out
+                             : std::max(profile_.approach / wall.along + level / wall.out, over);
       cutter_.rapid(wall.along < kSteep ? Vector{span.from, free_} : begin - way * wall);
       cutter_.cut(Vector{span.from, level});
     } else {

@@ -178,7 +178,7 @@ class Execution : public ValueSource {
   // words.cpp
   void run_words();
   void take_g(BlockWords& words, const GRule& rule);
-  void return_modes(const BlockWords& words, const Modes& before);
+  void return_modes(const BlockWords& words, const Modes& before, const ProgrammedFeed& feed);
   void run_cycle_block(const BlockWords& words);
   bool begin_contour(const BlockWords& words, const Modes& before);
   void refuse_in_contour(const BlockWords& words) const;

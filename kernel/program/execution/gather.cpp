@@ -27,6 +27,10 @@ BlockWords Execution::gather() {
     if (word.meaning == Meaning::axis) {
       if (word.axis < 0) continue;  // the language judges it
       refuse_barred(word.axis, word.column);
+      if (word.value.bare && !dialect_.lexis.bare_is_zero &&
+          (words.instead_word == nullptr || words.instead_word->g == nullptr ||
+           !words.instead_word->g->names_axes))
+        fail(Fault::value_missing, word.column, {std::string(1, word.letter), std::string(1, word.letter)});
       words.axis[static_cast<std::size_t>(word.axis)] = &word;
       ++words.axes;
     } else {

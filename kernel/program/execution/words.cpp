@@ -39,6 +39,7 @@ constexpr std::array<Mode, kFunctions> kModes = modes_of_functions();
 /// Source: specification A 5.
 void Execution::run_words() {
   const Modes before = state_.modes;
+  const ProgrammedFeed feed_before = state_.motion;
   const BlockWords words = gather();
   const bool contour_ends = begin_contour(words, before);
   if (words.cycle != 0 || !state_.motion.cycle.name.empty()) return run_cycle_block(words);
@@ -65,7 +66,8 @@ void Execution::run_words() {
       motion_.move(words);
   }
   if (contour_ends) contour_.end();
-  if (words.one_shot != 0 && (words.axes > 0 || moves || words.counts_as_motion)) return_modes(words, before);
+  if (words.one_shot != 0 && (words.axes > 0 || moves || words.counts_as_motion))
+    return_modes(words, before, feed_before);
   if (words.plane_behind != Function::nothing) frames_.select_plane(words.plane_behind, false, 0);
   if (words.then != Function::nothing)
     state_.modes.*kModes[static_cast<std::size_t>(words.then)] = words.then;
@@ -149,8 +151,8 @@ void Execution::run_cycle_block(const BlockWords& words) {
 }
 
 /// The former mode comes back in the groups where a block with motion changes it for itself only, and the
-/// former S with its unit.
-void Execution::return_modes(const BlockWords& words, const Modes& before) {
+/// former S and F with their units.
+void Execution::return_modes(const BlockWords& words, const Modes& before, const ProgrammedFeed& feed) {
   Modes& modes = state_.modes;
   for (std::size_t f = 0; f < kFunctions; ++f) {
     if ((words.one_shot >> f & 1u) == 0 || kModes[f] == nullptr) continue;
@@ -159,6 +161,8 @@ void Execution::return_modes(const BlockWords& words, const Modes& before) {
       modes.cutting = before.cutting;
       state_.motion.speed_told = false;
     }
+    if (kModes[f] == &Modes::feed && modes.feed != before.feed)
+      static_cast<ProgrammedFeed&>(state_.motion) = feed;
     modes.*kModes[f] = before.*kModes[f];
   }
 }

@@ -100,12 +100,14 @@ bool is_no_word(const Dialect& dialect, std::string_view line, std::size_t pos) 
          (meaning == Meaning::later && pos + 1 < line.size() && is_letter(line[pos + 1]));
 }
 
-/// A letter alone is 0, where 0 is possible; one with letters behind it that are no words is none.
+/// A letter alone is 0 in some languages, where 0 is possible; one with letters behind it that are no words
+/// is none.
 void check_bare(const Dialect& dialect, const LetterRule& rule, const Block& block, const Word& word,
                 std::size_t pos) {
   const std::string_view line = block.line;
   const bool letters = is_no_word(dialect, line.substr(0, block.end), pos);
-  if (!letters && rule.min <= 0.0 && rule.max >= 0.0) return;
+  const bool zero = dialect.lexis.bare_is_zero || (rule.meaning == Meaning::axis && rule.bare);
+  if (zero && !letters && rule.min <= 0.0 && rule.max >= 0.0) return;
   name_later_g(block);
   fail(Fault::value_missing, word.column,
        {std::string(1, word.letter), run_at(line.substr(0, block.end), word.column - 1u)});
@@ -196,7 +198,8 @@ void read_plain(BlockText& text, const LetterRule& rule, Word& word) {
   }
   if (word.value.expression != 0) return;
   if (word.value.parameter >= 0) return check_parameter(text.dialect, rule.parameters, name, word.value);
-  if (word.value.bare && !rule.bare) check_bare(text.dialect, rule, text.block, word, text.pos);
+  if (word.value.bare && (!rule.bare || rule.meaning == Meaning::axis))
+    check_bare(text.dialect, rule, text.block, word, text.pos);
   if (rule.meaning == Meaning::g && word.value.fraction && text.dialect.lexis.point_in_g) read_g_point(word);
   if (is_whole(rule.meaning) && (word.value.fraction || word.value.negative))
     fail(Fault::whole_number, word.value.column,

@@ -149,6 +149,7 @@ struct GRule {
   void (*motion)(Execution&, const BlockWords&) = nullptr;  ///< of Function::own
   /// Behind the mode that it sets, with the arguments that only such a word takes; null: nothing.
   void (*take)(Execution&, BlockWords&, const Word&) = nullptr;
+  bool names_axes = false;  ///< the values of axis words beside it do not count and may be missing
 };
 
 /// What the control itself does with an M word, beside handing it to the PLC.
@@ -206,6 +207,7 @@ struct Lexis {
   bool named_words = false;         ///< two letters or more are a name, small letters as capitals
   bool decimal_comma = false;
   bool bare_block_number = false;    ///< N without digits
+  bool bare_is_zero = false;         ///< a letter without a value counts as 0, where 0 is possible
   bool g_first = false;              ///< G words stand before coordinates
   bool tool_with_corrector = false;  ///< T3.12
   bool comment_behind_words = true;  ///< the old control knows it, too
@@ -269,8 +271,12 @@ struct Dialect {
   ToolChange tool_change = ToolChange::by_function;
   bool end_returns = false;          ///< the end of the program returns from a subprogram
   bool origins_exist = false;        ///< all of them, 0 where the table has no row
+  bool feed_by_unit = false;         ///< F counts only in the unit (G94, G95) in which it was written
   bool standing_is_error = false;    ///< a feed per revolution while the spindle stands; otherwise a warning
   bool subprogram_end_ends = false;  ///< the end of a subprogram ends the main program
+  /// Of an outer corner of a compensated contour, in radii of the tool: a sharper one is gone round on an
+  /// arc.
+  double longest_spike = 100.0;
   std::size_t max_block_characters;
   std::size_t max_label_characters;
   std::size_t max_block_number_digits;

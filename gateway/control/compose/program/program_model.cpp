@@ -22,6 +22,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
       axis.travel_min = a.travel_min;
       axis.travel_max = a.travel_max;
     }
+    axis.reference = a.endless() ? a.home.position : std::clamp(a.home.position, a.travel_min, a.travel_max);
     axis.process = a.process - 1;
     axis.endless = a.endless();
     axis.rapid = a.max_velocity;

@@ -11,10 +11,9 @@ namespace servogate::program {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSame = 1e-9;         ///< mm
-constexpr double kSmooth = 1e-5;       ///< sine of a turn that is none
-constexpr double kBackwards = 1e-6;    ///< mm or degrees that an element may be passed backwards by rounding
-constexpr double kLongestSpike = 100;  ///< of an outer corner, in distances of the tool's centre
+constexpr double kSame = 1e-9;       ///< mm
+constexpr double kSmooth = 1e-5;     ///< sine of a turn that is none
+constexpr double kBackwards = 1e-6;  ///< mm or degrees that an element may be passed backwards by rounding
 constexpr std::size_t kMostBehind = 256;
 
 std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
@@ -244,7 +243,7 @@ ContourElement Contour::chamfer(ContourElement& first, ContourElement& second, c
 }
 
 /// From the end of an element shifted to its side to the beginning of the next one.
-Contour::Joint Contour::joint(const ContourElement& first, const ContourElement& second, bool rolled) {
+Contour::Joint Contour::joint(const ContourElement& first, const ContourElement& second, bool rolled) const {
   const Point corner = first.end;
   const Point in = direction(first, corner), out = direction(second, second.start);
   const double sine = cross(in, out), cosine = dot(in, out);
@@ -265,7 +264,7 @@ Contour::Joint Contour::joint(const ContourElement& first, const ContourElement&
   for (int i = 0; i < meeting.count; ++i)
     if (best == nullptr || distance(meeting[i], corner) < distance(*best, corner))
       best = &meeting.items[at(i)];
-  if (best != nullptr && (!outer || distance(*best, corner) <= kLongestSpike * std::abs(left)))
+  if (best != nullptr && (!outer || distance(*best, corner) <= dialect_.longest_spike * std::abs(left)))
     return {*best, *best};
   if (!outer) fail_at(Fault::contour_no_joint, second.place, {millimetres(std::abs(left))});
   return roll();

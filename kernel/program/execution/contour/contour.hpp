@@ -77,7 +77,7 @@ class Contour {
   void join(ContourElement next);
   static ContourElement between(ContourElement& first, ContourElement& second, const CornerWord& word);
   static ContourElement chamfer(ContourElement& first, ContourElement& second, const CornerWord& word);
-  static Joint joint(const ContourElement& first, const ContourElement& second, bool rolled);
+  Joint joint(const ContourElement& first, const ContourElement& second, bool rolled) const;
   void pass(const ContourElement& first, const ContourElement& second, bool rolled);
   void give(const ContourElement& element, Point end);
   void give_line(const ContourElement& element, Point end, const Position& to);

@@ -25,6 +25,12 @@ bool Flow::leave_part_or_file() {
     state_.part.reset();
     return true;
   }
+  if (!state_.part)
+    for (const FlowState::Contour& c : state_.contours)
+      if (c.first == state_.line && c.file == state_.file) {
+        state_.line = c.last + 1;
+        return true;
+      }
   if (state_.line < source().lines() || state_.calls.empty()) return false;
   if (state_.loops.size() > state_.calls.back().loops) {
     line_ = state_.loops.back().first;
@@ -138,6 +144,16 @@ void Flow::call(std::uint32_t line, int times, int column, std::vector<double> a
 void Flow::run_part(std::uint32_t first, std::uint32_t last) {
   state_.part = FlowState::Part{state_.calls.size(), first, last, state_.line, state_.loops.size()};
   state_.line = first;
+}
+
+void Flow::pass_over(std::uint32_t first, std::uint32_t last) {
+  const auto known = std::find_if(
+      state_.contours.begin(), state_.contours.end(),
+      [&](const FlowState::Contour& c) { return c.file == state_.file && c.first == first; });
+  if (known != state_.contours.end())
+    known->last = last;
+  else
+    state_.contours.push_back({state_.file, first, last});
 }
 
 void Flow::enter_text(const std::string& name, std::string_view text) {

@@ -59,7 +59,10 @@ class Flow {
   /// Argument of the innermost call; 0 where it is missing.
   double argument(std::size_t index) const;
   void run_part(std::uint32_t first, std::uint32_t last);
-  /// At the end of a part that is run, or of a subprogram's file: goes back. False: nothing ends here.
+  /// These lines of this file belong to a cycle: from now on only `run_part` executes them.
+  void pass_over(std::uint32_t first, std::uint32_t last);
+  /// At the end of a part that is run, or of a subprogram's file: goes back; at a contour that is passed over:
+  /// behind it. False: the program goes on with the next line.
   bool leave_part_or_file();
   /// A text of its own, from its beginning, in place of the program.
   void enter_text(const std::string& name, std::string_view text);

@@ -331,6 +331,7 @@ void Motion::store_feed(const BlockWords& words) {
                           text::number(rule.max).c_str());
   if (modes_.feed == Function::feed_inverse) return;
   state_.feed = value;
+  state_.feed_unit = modes_.feed;
   state_.feed_at = capability_.written(words.feed->column);
   state_.feed_inch = modes_.unit == Function::inch && !state_.feed_metric;
 }
@@ -355,7 +356,8 @@ Feed Motion::programmed_feed(const BlockWords& words, double length_mm, bool rot
     if (words.feed == nullptr) fail(Fault::feed_inverse, here());
     return {numbers_.resolve(words.feed->value), FeedUnit::inverse_time};
   }
-  if (state_.feed <= 0.0) fail(Fault::feed_missing, here());
+  if (state_.feed <= 0.0 || (dialect_.feed_by_unit && state_.feed_unit != modes_.feed))
+    fail(Fault::feed_missing, here());
   const double factor = state_.feed_inch && !rotary_only ? 25.4 : 1.0;
   return {state_.feed * factor,
           modes_.feed == Function::feed_revolution ? FeedUnit::mm_per_rev : FeedUnit::mm_per_min};

@@ -27,9 +27,11 @@ struct MachineModel {
     bool diameter = false;
     bool alternative_inch = false;
     double travel_min = -1e9, travel_max = 1e9;  ///< mm or degrees; lathe X as radius
-    double rapid = 0.0;                          ///< largest speed, mm/s or degrees/s; 0: not known
-    double acceleration = 0.0;                   ///< mm/s2 or degrees/s2; 0: not known
-    double jerk = 0.0;                           ///< mm/s3 or degrees/s3; 0: not known
+    /// Where homing finds its mark, within the travel; mm or degrees of the machine; lathe X as radius.
+    double reference = 0.0;
+    double rapid = 0.0;          ///< largest speed, mm/s or degrees/s; 0: not known
+    double acceleration = 0.0;   ///< mm/s2 or degrees/s2; 0: not known
+    double jerk = 0.0;           ///< mm/s3 or degrees/s3; 0: not known
     double window_max = 0.0;     ///< largest in-position window of a program, mm or degrees; 0: not known
     double window_coarse = 0.0;  ///< in-position window of the coarse exact stop, mm or degrees
     int process = 0;             ///< whose programs move it, from 0

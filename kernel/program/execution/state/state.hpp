@@ -57,11 +57,18 @@ struct FlowState {
     std::uint32_t back;
     std::size_t loops;
   };
+  /// Lines that a cycle works by their numbers; passing over them does not execute them.
+  struct Contour {
+    int file;
+    std::uint32_t first;
+    std::uint32_t last;
+  };
   int file = 0;
   std::uint32_t line = 0;  ///< next line to read
   std::vector<Call> calls;
   std::vector<Loop> loops;
   std::optional<Part> part;
+  std::vector<Contour> contours;
   bool barrier = false;    ///< the next block is read only after the motion before it
   bool went_back = false;  ///< a jump has led back since the block began
 };
@@ -125,13 +132,18 @@ struct FramesState {
   bool zones_active = false;
 };
 
-/// What motion goes by beside the modes.
-struct MotionState {
-  double feed = 0.0;  ///< F as programmed, 0: never
+/// F as programmed.
+struct ProgrammedFeed {
+  double feed = 0.0;  ///< 0: never
   bool feed_inch = false;
-  bool feed_metric = false;  ///< an inch mode in force is one of lengths only
+  Function feed_unit = Function::feed_minute;  ///< the mode in which it was written
   Written feed_at;
-  bool speed_told = true;  ///< the machine knows the speed of `modes`
+};
+
+/// What motion goes by beside the modes.
+struct MotionState : ProgrammedFeed {
+  bool feed_metric = false;  ///< an inch mode in force is one of lengths only
+  bool speed_told = true;    ///< the machine knows the speed of `modes`
   Written speed_at;
   SpindleMode spindle = SpindleMode::stop;
   double limit_rpm = 0.0;  ///< of a cutting speed, 0: none

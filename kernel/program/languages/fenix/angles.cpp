@@ -52,7 +52,7 @@ void line_by_angle(Execution& run, const BlockWords& words) {
     fail(Wrong::line_angle, column, {arguments.name(), run.machine().axes[at(along_z ? z : x)].letter});
   const int other = along_z ? x : z;
   const double way = way_of(run, words, along_z ? z : x) * tan_deg(angle);
-  const Word word = made_up(run, *words.instead_word, other, along_z ? -way : way);
+  const Word word = made_up(run, *words.instead_word, other, -way);
   BlockWords all = words;
   all.axis[at(other)] = &word;
   ++all.axes;

@@ -17,7 +17,12 @@ constexpr auto rules() {
   add({.number = 4, .group = '1', .function = Function::own, .motion = dwell});
   add({.number = 9, .group = '2', .function = Function::exact_once});
   add({.number = 15, .group = '1', .function = Function::own, .motion = turn_spindle, .take = as_motion});
-  add({.number = 30, .group = '1', .function = Function::own, .motion = home, .take = as_motion});
+  add({.number = 30,
+       .group = '1',
+       .function = Function::own,
+       .motion = home,
+       .take = as_motion,
+       .names_axes = true});
   add({.number = 31, .group = '1', .function = Function::own, .motion = thread_passes});
   add({.number = 32, .group = '1', .function = Function::own, .motion = thread_once});
   for (const std::uint16_t cycle : {70, 71, 72, 73, 74, 75, 77, 78})
@@ -156,7 +161,7 @@ constexpr std::array<LetterRule, 128> letters() {
     at(c) = {.meaning = Meaning::statement, .rule = &rule};
   };
   for (const char c : {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 'W'})
-    at(c) = {.meaning = Meaning::axis, .min = -kCoordinate, .max = kCoordinate};
+    at(c) = {.meaning = Meaning::axis, .min = -kCoordinate, .max = kCoordinate, .bare = true};
   at('N') = {.meaning = Meaning::number, .max = 99999999};
   at(':') = at('N');
   at('G') = {.meaning = Meaning::g, .max = 999};
@@ -184,7 +189,8 @@ constexpr std::array<LetterRule, 128> letters() {
 /// The guide's numbers (specification 23).
 constexpr OwnError kErrors[] = {
     {Fault::feed_missing,
-     {"P703, 124", "no feed: F was never programmed", "нет подачи: F ещё не задавалась"}},
+     {"P703, 124", "no feed: program F in the unit that is in force (G94, G95)",
+      "нет подачи: задайте F в действующих единицах (G94, G95)"}},
     {Fault::spindle_stands,
      {"P824, 124", "the feed is per revolution, and the spindle stands: S and M3 or M4 first",
       "подача на оборот, а шпиндель стоит: сначала S и M3 или M4"}},
@@ -210,6 +216,7 @@ const Dialect kDialect = {
     .plane = Function::plane_31,
     .corner = Function::continuous,
     .tool_change = ToolChange::at_once,
+    .feed_by_unit = true,
     .standing_is_error = true,
     .max_block_characters = 255,
     .max_label_characters = 0,

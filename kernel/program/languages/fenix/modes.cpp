@@ -91,7 +91,8 @@ void home(Execution& run, const BlockWords& words) {
     fail(Wrong::cycle_axis, words.instead_word->column, {"G30", text::both("an axis", "ось")});
   Position to = run.state().frames.machine;
   for (int a = 0; a < run.machine().axis_count(); ++a)
-    if (words.axis[static_cast<std::size_t>(a)] != nullptr) to[static_cast<std::size_t>(a)] = 0.0;
+    if (words.axis[static_cast<std::size_t>(a)] != nullptr)
+      to[static_cast<std::size_t>(a)] = run.machine().axes[static_cast<std::size_t>(a)].reference;
   run.motion().rapid_to(to);
 }
 

@@ -212,6 +212,7 @@ const Dialect kDialect = {
               .tape = '%',
               .bracket = Bracket::own_form,
               .equals_is_own_form = true,
+              .bare_is_zero = true,
               .g_first = true,
               .comment_behind_words = false},
     .terms = {.prefix = "/ \"LABEL\" N # or &",

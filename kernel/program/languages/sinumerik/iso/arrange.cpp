@@ -46,6 +46,29 @@ std::uint32_t look(Execution& run, BlockWords& words) {
   return letters;
 }
 
+/// O1234 alone in the first block names the program, as other controls with this language write it.
+bool is_name(const Execution& run, BlockWords& words, std::uint32_t letters) {
+  if (letters != bit_of('O') || run.state().executed != 1) return false;
+  words.amount = nullptr;
+  return true;
+}
+
+/// G50 S or G92 S of turning bounds the speed of G96, as other controls with this language take it.
+bool bounds_speed(Execution& run, BlockWords& words, std::uint32_t letters) {
+  if (words.instead != preset || words.speed == nullptr || !run.machine().turns() ||
+      (letters & ~bit_of('S')) != bit_of('G'))
+    return false;
+  const double most = run.numbers().resolve(words.speed->value);
+  if (!(most > 0.0))
+    fail(Wrong::letter_range, words.speed->column, {g_word(run, words), "S", text::number(most), "> 0"});
+  run.state().motion.limit_rpm = most;
+  run.state().motion.speed_told = false;
+  words.speed = nullptr;
+  words.instead = nullptr;
+  words.instead_word = nullptr;
+  return true;
+}
+
 /// MD20250: so many blocks without motion in the plane stand between two of a compensated contour.
 void count_dummy_blocks(Execution& run, const BlockWords& words) {
   const FramesState& frames = run.state().frames;
@@ -108,6 +131,7 @@ void arrange(Execution& run, BlockWords& words) {
   if (take_macro(run, words)) return;
   scale_numbers(run, words);
   const std::uint32_t letters = look(run, words);
+  if (is_name(run, words, letters) || bounds_speed(run, words, letters)) return;
   if (words.feed != nullptr && run.numbers().resolve(words.feed->value) <= 0.0)
     fail(Wrong::feed_zero, words.feed->column, {text::number(words.feed->value.number)});
   if ((letters & kSeldom) != 0) {

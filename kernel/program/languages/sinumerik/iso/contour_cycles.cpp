@@ -271,6 +271,7 @@ Roughing cycle_of(Execution& run, const BlockWords& words, Lines& lines) {
   work.start = stands(run);
   work.contour = Reader(run, words).read(lines);
   if (work.contour.empty()) fail(Wrong::axis_alone, work.column, {work.name});
+  run.flow().pass_over(lines.first, lines.last);
   return work;
 }
 

@@ -246,6 +246,7 @@ Dialect made(System system, bool values) {
       .tool_change = turns ? ToolChange::at_once : ToolChange::by_function,
       .end_returns = true,
       .origins_exist = true,
+      .longest_spike = 2.0,
       .max_block_characters = 512,
       .max_label_characters = 0,
       .max_block_number_digits = 8,

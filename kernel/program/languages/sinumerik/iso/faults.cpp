@@ -83,8 +83,10 @@ constexpr text::Entry kMessages[] = {
     {"P886",
      "{0}: the tool stands at {1}{2} and the contour reaches {1}{3}: start the cycle beside the contour",
      "{0}: инструмент стоит на {1}{2}, а контур доходит до {1}{3}: начните цикл вне контура"},
+    {"P887, 61101", "{0}: the bottom at {1}{3} does not lie behind R at {1}{2}: correct {1} and R",
+     "{0}: дно на {1}{3} не лежит за плоскостью R на {1}{2}: исправьте {1} и R"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::start_inside) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::hole_depth) + 1);
 
 }  // namespace
 

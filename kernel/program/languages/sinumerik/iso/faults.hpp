@@ -59,6 +59,7 @@ enum class Wrong {
   rotary_way,
   rotation_axis,
   start_inside,
+  hole_depth,
 };
 
 std::span<const text::Entry> messages();

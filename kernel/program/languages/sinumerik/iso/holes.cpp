@@ -68,6 +68,17 @@ void to_place(Execution& run, const BlockWords& words, int axis) {
   run.block() = written;
 }
 
+/// Behind R the tool does not turn back towards the initial plane; G87 of milling bores upwards.
+void judge_depth(const Execution& run, const Hole& hole) {
+  if (hole.g == 87 && !run.machine().turns()) return;
+  const double in = hole.depth - hole.level, back = hole.initial - hole.level;
+  if (std::abs(in) > 1e-9 && (in * back <= 0.0 || std::abs(in) > std::abs(back) + 1e-9)) return;
+  const MachineModel::Axis& axis = run.machine().axes[at(hole.axis)];
+  const double shown = axis.diameter ? 2.0 : 1.0;
+  fail(Wrong::hole_depth, hole.column,
+       {hole.name, axis.letter, text::number(shown * hole.level), text::number(shown * hole.depth)});
+}
+
 void drill(Execution& run, const BlockWords& words) {
   State& state = run.state();
   const bool turns = run.machine().turns();
@@ -91,6 +102,7 @@ void drill(Execution& run, const BlockWords& words) {
   hole.initial = value(state, own::hole_initial);
   run.motion().store_feed(words);
   take_words(run, words, hole);
+  judge_depth(run, hole);
   run.motion().end_profile();
   const int clamp = turns ? clamp_of(run, words) : -1;
   const bool places = words.axes > (words.axis[at(hole.axis)] != nullptr ? 1 : 0);

@@ -106,6 +106,7 @@ std::span<const VariableRule> settings();
 double setting(const Execution& run, const char* name);
 bool bit(const Execution& run, int bit);  ///< of MD20734
 /// MD34100, the reference position `n` from 1 of an axis as programs count it; its unit is mm or degrees.
+/// Where the machine file has none, the first one is where homing finds its mark.
 double reference_position(const Execution& run, int axis, int n);
 /// Data of an axis by the beginning of their names: FLOATING_X, its floating reference position, and
 /// OVERRUN_X, by which G60 goes beyond its end. As programs count them; none: the machine file does not have

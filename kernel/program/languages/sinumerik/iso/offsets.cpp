@@ -95,9 +95,16 @@ void refresh_offsets(Execution& run) {
     frame.set_mirrored(a, mirrored(state, a));
     zero[at(a)] = mirrored(state, a) ? 2.0 * state.own[own::mirror_at + at(a)] : 0.0;
   }
-  const double angle = value(state, own::rotation), copied = value(state, own::copy_angle);
+  double angle = value(state, own::rotation);
+  const double copied = value(state, own::copy_angle);
   if (a1 >= 0 && a2 >= 0) {
-    turn(zero[at(a1)], zero[at(a2)], angle, state.own[own::rotation_at], state.own[own::rotation_at + 1]);
+    // The rotation is that of the part, whose mirror image turns the other way (table 2-12 of the manual).
+    const auto centre = [&](std::size_t n, int axis) {
+      const double written = state.own[own::rotation_at + n];
+      return mirrored(state, axis) ? 2.0 * state.own[own::mirror_at + at(axis)] - written : written;
+    };
+    if (mirrored(state, a1) != mirrored(state, a2)) angle = -angle;
+    turn(zero[at(a1)], zero[at(a2)], angle, centre(0, a1), centre(1, a2));
     turn(zero[at(a1)], zero[at(a2)], copied, state.own[own::copy_at], state.own[own::copy_at + 1]);
   }
   frame.set_rotation(std::fmod(angle + copied, 360.0));
@@ -248,7 +255,7 @@ void rotate_off(Execution& run, const BlockWords& words) {
   refresh_offsets(run);
 }
 
-/// With G91 the pole is where the axes stand, otherwise zero (specification 8.11).
+/// With G91 the pole of a block with a radius is where the axes stand, otherwise zero (specification 8.11).
 void polar_on(Execution& run, BlockWords&, const Word&) {
   State& state = run.state();
   value(state, own::polar) = 1.0;
@@ -266,11 +273,11 @@ void arrange_polar(Execution& run, BlockWords& words) {
   const bool incremental = state.modes.dimension == Function::incremental;
   const Position& from = state.frames.programmed;
   double pole1 = 0.0, pole2 = 0.0;
-  if (incremental) {
-    pole1 = from[at(a1)];
-    pole2 = from[at(a2)];
-  }
   double r = state.own[own::polar_at], phi = state.own[own::polar_at + 1];
+  if (incremental) {  // the pole is where the axes stand, and stays where the angle alone changes
+    pole1 = from[at(a1)] - (radius == nullptr ? r * cos_deg(phi) : 0.0);
+    pole2 = from[at(a2)] - (radius == nullptr ? r * sin_deg(phi) : 0.0);
+  }
   if (radius != nullptr)
     r = std::abs(run.numbers().length(a1, radius->value));
   else if (!incremental)

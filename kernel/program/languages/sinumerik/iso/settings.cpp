@@ -150,8 +150,9 @@ std::optional<double> axis_setting(const Execution& run, std::string_view name, 
 
 double reference_position(const Execution& run, int axis, int n) {
   const MachineModel::Axis& a = run.machine().axes[at(axis)];
-  const double value = run.machine().variable(reference_name(a.letter[0], n).c_str(), 0.0);
-  return a.diameter ? value / 2.0 : value;
+  const auto set = run.machine().variables.find(reference_name(a.letter[0], n));
+  if (set == run.machine().variables.end()) return n == 1 ? a.reference : 0.0;
+  return a.diameter ? set->second / 2.0 : set->second;
 }
 
 }  // namespace servogate::program::sinumerik::iso

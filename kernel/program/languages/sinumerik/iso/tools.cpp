@@ -114,6 +114,8 @@ void arrange_tool(Execution& run, BlockWords& words) {
   const int number = whole(run, 'D', 0);
   if (number != 0 && row_of(run, number) == nullptr)
     fail(Wrong::offset_missing, d->column, {"D" + std::to_string(number)});
+  if (run.contour().engaged() && number != state.frames.radius_row)
+    fail(Wrong::compensated, d->column, {"D" + std::to_string(number), "G41/G42"});
   state.frames.radius_row = number;
 }
 
