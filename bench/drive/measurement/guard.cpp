@@ -192,7 +192,10 @@ bool Guard::lead_to(double target) {
 }
 
 bool Guard::run_at(double speed, double acceleration, double hold_s) {
-  const double from = last_speed_asked_;
+  // From what it makes, where it was led by torque or position before.
+  const double most = envelope_.speed_rad_s;
+  const double from =
+      last_loop_ == Loop::velocity ? last_speed_asked_ : std::clamp(even_speed(), -most, most);
   const double ramp = std::abs(speed - from) / acceleration;
   for (double t = period_; t < ramp; t += period_)
     if (!step(Loop::velocity, from + (speed - from) * t / ramp)) return false;
