@@ -76,7 +76,7 @@ bool makes_a_turn(const Arrays& a) {
 }
 
 /// From the slowest runs that make a turn, four speeds in both directions.
-std::optional<Cogging> rough_cogging(const Guard& guard, const std::vector<EvenSpan>& spans) {
+std::optional<Cogging> rough_cogging(Guard& guard, const std::vector<EvenSpan>& spans) {
   constexpr std::size_t kRuns = 8;
   std::vector<Arrays> arrays;
   for (const EvenSpan& span : spans) {
@@ -85,7 +85,9 @@ std::optional<Cogging> rough_cogging(const Guard& guard, const std::vector<EvenS
   }
   std::vector<EvenRun> runs;
   for (const Arrays& a : arrays) runs.push_back({a.angle, a.torque, guard.period_s()});
-  return find_cogging(runs);
+  std::optional<Cogging> found;
+  guard.meanwhile([&] { found = find_cogging(runs); });
+  return found;
 }
 
 /// Where cogging is measured. Far below the antiresonance the torque shows nearly all of it, but there the
@@ -122,16 +124,18 @@ bool run_for_cogging(Guard& guard, const IdentifyPlan& plan, const std::vector<d
       span.to = guard.samples().size();
       spans.push_back(span);
     }
-  return true;
+  return guard.run_at(0.0, acceleration_of(plan), 0.05);
 }
 
-std::optional<Cogging> sized_cogging(const Guard& guard, const std::vector<EvenSpan>& spans,
+std::optional<Cogging> sized_cogging(Guard& guard, const std::vector<EvenSpan>& spans,
                                      const Identified& found) {
   std::vector<Arrays> arrays;
   for (const EvenSpan& span : spans) arrays.push_back(arrays_of(guard, span));
   std::vector<EvenRun> runs;
   for (const Arrays& a : arrays) runs.push_back({a.angle, a.torque, guard.period_s()});
-  return size_cogging(runs, found.masses, found.friction, found.cogging->periods);
+  std::optional<Cogging> sized;
+  guard.meanwhile([&] { sized = size_cogging(runs, found.masses, found.friction, found.cogging->periods); });
+  return sized;
 }
 
 std::vector<FrictionPoint> friction_points(const Guard& guard, const std::vector<EvenSpan>& spans,
@@ -209,6 +213,31 @@ struct Response {
   double excitation_nm = 0.0;
 };
 
+struct ResponseCourse {
+  const std::vector<double>&reference, &command, &angle, &torque, &net;
+};
+
+/// nullopt: no masses explain it.
+std::optional<Response> response_of_course(const IdentifyPlan& plan, double period, const ResponseCourse& c) {
+  const std::vector<double> speed = slope(c.angle, period);
+  // The first block is for what was before it to die away; speed i is of sample i + 1.
+  const auto cut = [&](const std::vector<double>& v, std::size_t shift) {
+    return std::span(v).subspan(plan.block + shift, plan.block * static_cast<std::size_t>(plan.blocks));
+  };
+  SpectrumSettings settings;
+  settings.period_s = period;
+  settings.block = plan.block;
+  Response r;
+  r.response = frequency_response(cut(c.reference, 1), cut(c.net, 1), cut(speed, 0), settings);
+  for (ResponseLine& line : r.response.lines) line.value /= slope_gain(line.hz, period);
+  r.command_delay_s =
+      delay_of(frequency_response(cut(c.reference, 1), cut(c.command, 1), cut(c.torque, 1), settings));
+  const auto masses = fit_masses(r.response);
+  if (!masses) return std::nullopt;
+  r.masses = *masses;
+  return r;
+}
+
 struct ResponseTry {
   double bias_rad_s = 0.0, excitation_nm = 0.0;
 };
@@ -243,25 +272,11 @@ bool take_response(Guard& guard, const IdentifyPlan& plan, double inertia, const
     torque.push_back(guard.samples()[i].torque_nm);
     net.push_back(torque.back() - (out.cogging ? out.cogging->at(angle.back()) : 0.0));
   }
-  const std::vector<double> speed = slope(angle, guard.period_s());
-  // The first block is for what was before it to die away; speed i is of sample i + 1.
-  const auto cut = [&](const std::vector<double>& v, std::size_t shift) {
-    return std::span(v).subspan(plan.block + shift, plan.block * static_cast<std::size_t>(plan.blocks));
-  };
-  SpectrumSettings settings;
-  settings.period_s = guard.period_s();
-  settings.block = plan.block;
-  Response r;
-  r.excitation_nm = how.excitation_nm;
-  r.response = frequency_response(cut(reference, 1), cut(net, 1), cut(speed, 0), settings);
-  for (ResponseLine& line : r.response.lines) line.value /= slope_gain(line.hz, guard.period_s());
-  r.command_delay_s =
-      delay_of(frequency_response(cut(reference, 1), cut(command, 1), cut(torque, 1), settings));
-  const auto masses = fit_masses(r.response);
-  if (!masses) return true;
-  r.masses = *masses;
-  result = std::move(r);
-  return true;
+  if (!guard.run_at(0.0, acceleration_of(plan), 0.05)) return false;
+  return guard.meanwhile([&] {
+    result = response_of_course(plan, guard.period_s(), {reference, command, angle, torque, net});
+    if (result) result->excitation_nm = how.excitation_nm;
+  });
 }
 
 /// Cogging that passes at about the resonance shakes the load loose: then so fast that it passes beyond it.
