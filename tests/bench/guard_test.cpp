@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <limits>
+#include <thread>
 
 #include "tests/bench/plant_on_bench.hpp"
 
@@ -194,6 +195,37 @@ TEST(Guard, keeps_every_cycle_with_its_stage) {
   EXPECT_EQ(rig.guard.stages()[last.stage], "even");
   EXPECT_EQ(last.set_point, 2.0);
   EXPECT_NEAR(rig.guard.speed_rad_s(), 2.0, 0.2);
+}
+
+/// A computation that ends when the drive has seen so many cycles more.
+std::function<void()> as_long_as(const PlantOnBench& drive, int cycles) {
+  return [&drive, end = drive.cycles + cycles] {
+    while (drive.cycles < end) std::this_thread::yield();
+  };
+}
+
+TEST(Guard, keeps_a_drive_in_its_cycles_at_rest_or_without_power_while_something_is_computed) {
+  PlantOnBench drive((mock::PlantConfig()));
+  drive.alive = true;
+  Guard guard(drive, {-10.0, 10.0, 20.0, 1.0, 1e9, 0.5});
+  ASSERT_TRUE(guard.enable(Loop::velocity));
+  EXPECT_TRUE(guard.meanwhile(as_long_as(drive, 200)));
+  EXPECT_TRUE(drive.asked.power);
+  EXPECT_EQ(drive.asked.value, 0.0);
+  ASSERT_TRUE(guard.release());
+  EXPECT_TRUE(guard.meanwhile(as_long_as(drive, 200)));
+  EXPECT_FALSE(drive.asked.power);
+}
+
+TEST(Guard, takes_the_power_when_the_operator_ends_a_run_that_computes) {
+  PlantOnBench drive((mock::PlantConfig()));
+  drive.alive = true;
+  Guard guard(drive, {-10.0, 10.0, 20.0, 1.0, 1e9, 0.5});
+  ASSERT_TRUE(guard.enable(Loop::velocity));
+  drive.ends = true;
+  EXPECT_FALSE(guard.meanwhile(as_long_as(drive, 200)));
+  EXPECT_EQ(guard.trip(), Trip::ended);
+  EXPECT_FALSE(drive.asked.power);
 }
 
 }  // namespace

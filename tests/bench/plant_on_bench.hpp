@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -17,8 +18,10 @@ class PlantOnBench final : public BenchDrive {
   }
   double period_s() const noexcept override { return 1e-3; }
   bool ended() const override { return ends; }
+  bool lives() const override { return alive; }
   bool cycle(const DriveAsk& ask, DriveAnswer& answer) override {
     answer = measured_;
+    ++cycles;
     const double turn = static_cast<double>(config_.counts_per_rev);
     // SYNC: what was asked a cycle ago acts, what is now is latched.
     measured_.online = online;
@@ -53,6 +56,8 @@ class PlantOnBench final : public BenchDrive {
   const mock::Plant& plant() const { return plant_; }
 
   bool ends = false, gone = false, online = true, faulted = false, drops = false;
+  bool alive = false;           ///< as if its time went on by itself
+  std::atomic<int> cycles = 0;  ///< so far
   DriveAsk asked;
   double clock_s = 0.0;  ///< by which the answers are measured
 

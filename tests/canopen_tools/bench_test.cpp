@@ -2,10 +2,12 @@
 // `servogate bench` against drives in other processes, seen only through the bus.
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <numbers>
 
 #include "tests/canopen_tools/lockstep_bench.hpp"
+#include "tests/comes.hpp"
 
 namespace servogate::canopen_tools {
 namespace {
@@ -203,6 +205,56 @@ TEST_F(Lockstep, a_soft_drive_is_tuned_and_what_was_promised_is_measured_on_it) 
   EXPECT_TRUE(ended.out_has("--restore " + out_ + "/before.dcf")) << ended.out;
 }
 
+/// A motor with a load behind a springy coupling: beyond the crossover it resonates.
+std::string resonating(const std::string& load) {
+  return "inertia=0.0008,friction=0.05,velocity-gain=0.12," + load;
+}
+constexpr const char* kTuneResonance =
+    " --periods 6 --to 400 --travel -1..100 --speed 6 --torque 4 --read 60F9:3 --i-may-move";
+
+TEST_F(Lockstep, a_notch_goes_into_the_drive_with_the_gains_and_makes_the_loop_as_promised) {
+  const Ended ended = bench("tune $DRIVE --apply --inner-delay 1.8 --gains " +
+                                shell::source("examples/bench/simulated.gains.toml") + kTuneResonance,
+                            resonating("load-inertia=0.0008,stiffness=700,damping=0.08"));
+  ASSERT_EQ(ended.code, 0) << ended.out << ended.err;
+  const json m = meta();
+  EXPECT_EQ(m["kept"], true);
+  EXPECT_EQ(m["notch"]["used"], true);
+  const double hz = m["notch"]["hz"];
+  EXPECT_NEAR(hz, 213.0, 8.0) << "sqrt(700 (1 / 0.0008 + 1 / 0.0008)) / 2 pi";
+  EXPECT_NEAR(m["gains"]["written"]["notch"]["hz"], hz, 0.001) << "as the drive gave it back";
+  const auto in_the_drive = [&](const std::string& part) {
+    return json::parse(desk_.text(out_ + "/" + part + "/meta.json"))["objects"]["60F9h:03"]["before"];
+  };
+  EXPECT_EQ(in_the_drive("step"), 0);
+  EXPECT_NEAR(in_the_drive("step-after"), 1000.0 * hz, 1.0) << "in mHz, while the step was measured";
+  const double promised = m["expected"]["loop"]["crossover_hz"], after = m["after"]["loop"]["crossover_hz"];
+  EXPECT_NEAR(after, promised, 0.1 * promised);
+  EXPECT_LT(m["after"]["step"]["itae"].get<double>(), m["before"]["step"]["itae"].get<double>());
+
+  // What the run has left in its directory takes the notch out of the same drive, and puts it there.
+  drives("5");
+  const auto notch = [&] { return facts("sdo $BUS 5 read 60F9:3")["value"].get<int>(); };
+  EXPECT_EQ(tool("od $BUS 5 --restore " + out_ + "/tuned.dcf").code, 0);
+  EXPECT_NEAR(notch(), 1000.0 * hz, 1.0);
+  EXPECT_EQ(tool("od $BUS 5 --restore " + out_ + "/before.dcf").code, 0);
+  EXPECT_EQ(notch(), 0);
+}
+
+TEST_F(Lockstep, a_notch_that_does_not_keep_its_promise_is_taken_back_with_the_gains) {
+  // The drive is faster than --inner-delay says, and the step is another one.
+  const Ended ended = bench("tune $DRIVE --apply --inner-delay 1.2 --gains " +
+                                shell::source("examples/bench/simulated.gains.toml") + kTuneResonance,
+                            resonating("load-inertia=0.0006,stiffness=600,damping=0.02"));
+  EXPECT_EQ(ended.code, 1) << ended.out;
+  const json m = meta();
+  EXPECT_EQ(m["kept"], false);
+  EXPECT_GT(m["gains"]["written"]["notch"]["hz"], 100.0) << "the drive had it";
+  EXPECT_TRUE(ended.err_has("the step overshoots more than was promised")) << ended.err;
+  EXPECT_TRUE(ended.err_has("bench.tune-back")) << ended.err;
+  EXPECT_FALSE(desk_.has(out_ + "/tuned.dcf"));
+}
+
 TEST_F(Lockstep, two_axes_drive_a_circle_in_the_same_cycles) {
   const std::string words =
       "run $DRIVE --with 6 --phase 90 --signal sine --loop position --amplitude 0.5 --from 1 --duration 2";
@@ -313,6 +365,34 @@ TEST_F(Bench, gains_that_a_master_changed_are_restored_from_their_dcf) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(facts("sdo $BUS 5 read 60F9:1")["value"], 600'000);
   EXPECT_EQ(facts("sdo $BUS 5 read 60FB:1")["value"], 120'000);
+}
+
+TEST_F(Bench, what_a_killed_run_has_changed_is_put_right_by_the_next_one) {
+  drives("5");
+  const auto hear = join();
+  const auto out = path("killed"), next = path("next");
+  usercan::Process run({"bench", "jog", bus(), "5", "0.2", "--duration", "60", "--travel", "-50..50",
+                        "--speed", "2", "--torque", "1", "--listen", "0.1", "--out", out, "--i-may-move"});
+  // The drive confirms that it has written 6072h: from here on it is not what it was.
+  EXPECT_TRUE(tests::comes([&] {
+    image::CanFrame f;
+    while (hear->receive(f))
+      if (f.id == 0x585 && f.data[0] == 0x60 && f.data[1] == 0x72 && f.data[2] == 0x60) return true;
+    return run.ended();
+  }));
+  run.signal(SIGKILL);
+  EXPECT_EQ(run.wait(), -1) << run.said();
+  ASSERT_TRUE(desk_.has("killed/changed.json"));
+  EXPECT_EQ(facts("sdo $BUS 5 read 6072")["value"], 417) << "what the killed run has left: 1 of 2.4 N m";
+
+  // It asks for too much speed and moves nothing: putting right comes before.
+  const Ended ended =
+      tool("bench jog $BUS 5 9 --travel -5..5 --speed 2 --torque 1 --listen 0.1 --i-may-move --out next");
+  EXPECT_NE(ended.code, 0);
+  EXPECT_TRUE(ended.err_has("6072h:00 of node 5 changed; it is 3000 again")) << ended.err;
+  EXPECT_EQ(facts("sdo $BUS 5 read 6072")["value"], 3000);
+  EXPECT_FALSE(desk_.has("killed/changed.json"));
+  EXPECT_NE(facts("sdo $BUS 5 read 6041")["value"].get<int>() & 0x6F, 0x27) << "not Operation enabled";
 }
 
 TEST_F(Bench, a_drive_in_fault_gets_no_power_and_its_reset_is_the_command_that_is_named) {

@@ -192,6 +192,17 @@ TEST_F(SimulatedDrives, a_sheet_may_have_wide_numbers_times_unicode_and_long_byt
   }
 }
 
+TEST_F(SimulatedDrives, a_text_of_a_sheet_is_whole_however_long) {
+  std::string words;
+  while (words.size() < 20'000) words += "0123456789";
+  desk_.write("long.eds",
+              "[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\nSupportedObjects=1\n1=0x2001\n"
+              "[2001]\nParameterName=own\nObjectType=7\nDataType=0x0009\nAccessType=rw\nDefaultValue=" +
+                  words + "\n");
+  drives("4", {"--profile", path("long.eds")});
+  EXPECT_EQ(facts("sdo $BUS 4 read 2001 str")["value"], words);
+}
+
 TEST_F(SimulatedDrives, the_eds_of_a_simulated_drive_makes_the_same_drive_again) {
   const usercan::Process& first = drives("5", {"--profile", "spindle", "--write-eds", path("own.eds")});
   EXPECT_TRUE(first.says("own.eds: EDS of node 5, ")) << first.said();

@@ -36,6 +36,8 @@ class BenchDrive {
   virtual double period_s() const noexcept = 0;
   /// One cycle. False: no further one can follow, the bus is gone.
   virtual bool cycle(const DriveAsk& ask, DriveAnswer& answer) = 0;
+  /// Whether its time goes on while nobody asks for a cycle: then it must not be left alone for long.
+  virtual bool lives() const { return false; }
   /// The operator ends the run; cycles go on, so that the drive can be stopped.
   virtual bool ended() const = 0;
 };

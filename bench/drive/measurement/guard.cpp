@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/drive/measurement/guard.hpp"
 
+#include <pthread.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <future>
+#include <thread>
 
 namespace servogate::bench {
 namespace {
@@ -192,7 +197,10 @@ bool Guard::lead_to(double target) {
 }
 
 bool Guard::run_at(double speed, double acceleration, double hold_s) {
-  const double from = last_speed_asked_;
+  // From what it makes, where it was led by torque or position before.
+  const double most = envelope_.speed_rad_s;
+  const double from =
+      last_loop_ == Loop::velocity ? last_speed_asked_ : std::clamp(even_speed(), -most, most);
   const double ramp = std::abs(speed - from) / acceleration;
   for (double t = period_; t < ramp; t += period_)
     if (!step(Loop::velocity, from + (speed - from) * t / ramp)) return false;
@@ -201,13 +209,37 @@ bool Guard::run_at(double speed, double acceleration, double hold_s) {
   return true;
 }
 
+bool Guard::meanwhile(const std::function<void()>& work) {
+  if (!drive_.lives()) {
+    work();
+    return trip_ == Trip::none;
+  }
+  std::packaged_task<void()> task([&work] {
+    const sched_param usual{};
+    pthread_setschedparam(pthread_self(), SCHED_OTHER, &usual);
+    work();
+  });
+  const std::future<void> done = task.get_future();
+  std::thread thread(std::move(task));
+  const auto goes_on = [&done] {
+    return done.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  };
+  while (goes_on() && powered_)
+    if (!step(Loop::velocity, 0.0)) release();
+  while (goes_on() && exchange({false, false, last_loop_, rest()})) {
+  }
+  thread.join();
+  return trip_ == Trip::none;
+}
+
+/// Of the loop that it is in: a drive may have no other.
+double Guard::rest() const { return last_loop_ == Loop::position ? answer_.position_rad : 0.0; }
+
 bool Guard::release() {
   if (released_) return !answer_.enabled;
   released_ = true;
   powered_ = false;
   stage("release");
-  // In the loop that it is in: a drive may have no other.
-  const auto rest = [this] { return last_loop_ == Loop::position ? answer_.position_rad : 0.0; };
   // The first cycles are for what is still on its way.
   int cycles = 0, resting = 0;
   for (double t = 0.0; t < kStopWait_s; t += period_) {

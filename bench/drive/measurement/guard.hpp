@@ -81,6 +81,9 @@ class Guard {
   bool lead_to(double target_rad);
   /// Changes the speed evenly, then holds it for `hold_s`.
   bool run_at(double speed_rad_s, double acceleration_rad_s2, double hold_s);
+  /// Computes what may take its time, on a thread of usual priority, while the drive stands in its velocity
+  /// loop or, without power, is kept on the bus. `work` does not touch the guard. False: the run is over.
+  bool meanwhile(const std::function<void()>& work);
   /// Stops it and takes the torque. True: the drive has shown that it has none.
   bool release();
 
@@ -110,6 +113,7 @@ class Guard {
   bool look_at_set_point(Loop loop, double set_point);
   bool look_at_travel(double position_rad, double speed_rad_s);
   double even_speed() const;
+  double rest() const;
 
   BenchDrive& drive_;
   Envelope envelope_;

@@ -76,7 +76,7 @@ bool makes_a_turn(const Arrays& a) {
 }
 
 /// From the slowest runs that make a turn, four speeds in both directions.
-std::optional<Cogging> rough_cogging(const Guard& guard, const std::vector<EvenSpan>& spans) {
+std::optional<Cogging> rough_cogging(Guard& guard, const std::vector<EvenSpan>& spans) {
   constexpr std::size_t kRuns = 8;
   std::vector<Arrays> arrays;
   for (const EvenSpan& span : spans) {
@@ -85,46 +85,57 @@ std::optional<Cogging> rough_cogging(const Guard& guard, const std::vector<EvenS
   }
   std::vector<EvenRun> runs;
   for (const Arrays& a : arrays) runs.push_back({a.angle, a.torque, guard.period_s()});
-  return find_cogging(runs);
+  std::optional<Cogging> found;
+  guard.meanwhile([&] { found = find_cogging(runs); });
+  return found;
 }
 
-/// Where cogging is measured: far below the antiresonance, at which it would shake the load loose, and so
-/// slow that the inertia takes little of the torque; but not so slow that the load chatters on friction which
-/// falls with the speed.
-double cogging_speed(const IdentifyPlan& plan, const Identified& found) {
-  constexpr double kRigidHz = 12.0, kOfAntiresonance = 0.35, kMostOfIt = 0.5, kStribecks = 1.5;
-  const double rad_per_hz = kTurn / found.cogging->periods;
-  const auto& coupling = found.masses.coupling;
-  const double slow = coupling ? std::min(kRigidHz, kOfAntiresonance * coupling->antiresonance_hz) : kRigidHz;
-  const double fast = coupling ? kMostOfIt * coupling->antiresonance_hz : kRigidHz;
-  const double even = std::clamp(kStribecks * found.friction.stribeck_speed_rad_s, slow * rad_per_hz,
-                                 std::max(slow, fast) * rad_per_hz);
-  return std::max(plan.slow_rad_s, even);
+/// Where cogging is measured. Far below the antiresonance the torque shows nearly all of it, but there the
+/// load may chatter on friction that falls with the speed. Above the resonance the load stands against the
+/// motor, and most of it goes into the motor's inertia. Both together are not misled by either.
+std::vector<double> cogging_speeds(const IdentifyPlan& plan, const Identified& found) {
+  constexpr double kRigidHz[] = {10.0, 25.0, 60.0};
+  constexpr double kOfAntiresonance[] = {0.14, 0.2}, kOfResonance[] = {1.2, 1.5, 1.8};
+  std::vector<double> hz;
+  if (const auto& c = found.masses.coupling) {
+    for (const double share : kOfAntiresonance) hz.push_back(share * c->antiresonance_hz);
+    for (const double share : kOfResonance) hz.push_back(share * c->resonance_hz);
+  } else {
+    hz.assign(std::begin(kRigidHz), std::end(kRigidHz));
+  }
+  std::vector<double> speeds;
+  for (const double f : hz) {
+    const double speed = std::max(plan.slow_rad_s, f * kTurn / found.cogging->periods);
+    if (speed <= plan.fast_rad_s && (speeds.empty() || speed > speeds.back())) speeds.push_back(speed);
+  }
+  return speeds;
 }
 
-/// Two even speeds, one in each direction, for the harmonic that was found.
-bool run_for_cogging(Guard& guard, const IdentifyPlan& plan, double speed, std::vector<EvenSpan>& spans) {
+/// Even speeds in both directions, for the harmonic that was found.
+bool run_for_cogging(Guard& guard, const IdentifyPlan& plan, const std::vector<double>& speeds,
+                     std::vector<EvenSpan>& spans) {
   constexpr double kHold_s = 1.2;
   guard.stage("cogging");
-  for (const double side : {1.0, -1.0}) {
-    if (!guard.run_at(side * speed, acceleration_of(plan), kSettle_s)) return false;
-    EvenSpan span{side * speed, guard.samples().size(), 0};
-    if (!guard.run_at(side * speed, acceleration_of(plan), kHold_s)) return false;
-    span.to = guard.samples().size();
-    spans.push_back(span);
-  }
-  return true;
+  for (const double speed : speeds)
+    for (const double side : {1.0, -1.0}) {
+      if (!guard.run_at(side * speed, acceleration_of(plan), kSettle_s)) return false;
+      EvenSpan span{side * speed, guard.samples().size(), 0};
+      if (!guard.run_at(side * speed, acceleration_of(plan), kHold_s)) return false;
+      span.to = guard.samples().size();
+      spans.push_back(span);
+    }
+  return guard.run_at(0.0, acceleration_of(plan), 0.05);
 }
 
-/// Of the runs in which the harmonic is slow enough.
-std::optional<Cogging> sized_cogging(const Guard& guard, const std::vector<EvenSpan>& spans,
-                                     const Identified& found, double fastest) {
+std::optional<Cogging> sized_cogging(Guard& guard, const std::vector<EvenSpan>& spans,
+                                     const Identified& found) {
   std::vector<Arrays> arrays;
-  for (const EvenSpan& span : spans)
-    if (std::abs(span.speed) <= fastest) arrays.push_back(arrays_of(guard, span));
+  for (const EvenSpan& span : spans) arrays.push_back(arrays_of(guard, span));
   std::vector<EvenRun> runs;
   for (const Arrays& a : arrays) runs.push_back({a.angle, a.torque, guard.period_s()});
-  return size_cogging(runs, found.masses, found.friction, found.cogging->periods);
+  std::optional<Cogging> sized;
+  guard.meanwhile([&] { sized = size_cogging(runs, found.masses, found.friction, found.cogging->periods); });
+  return sized;
 }
 
 std::vector<FrictionPoint> friction_points(const Guard& guard, const std::vector<EvenSpan>& spans,
@@ -202,26 +213,56 @@ struct Response {
   double excitation_nm = 0.0;
 };
 
-bool take_response(Guard& guard, const IdentifyPlan& plan, double inertia, double excitation,
+struct ResponseCourse {
+  const std::vector<double>&reference, &command, &angle, &torque, &net;
+};
+
+/// nullopt: no masses explain it.
+std::optional<Response> response_of_course(const IdentifyPlan& plan, double period, const ResponseCourse& c) {
+  const std::vector<double> speed = slope(c.angle, period);
+  // The first block is for what was before it to die away; speed i is of sample i + 1.
+  const auto cut = [&](const std::vector<double>& v, std::size_t shift) {
+    return std::span(v).subspan(plan.block + shift, plan.block * static_cast<std::size_t>(plan.blocks));
+  };
+  SpectrumSettings settings;
+  settings.period_s = period;
+  settings.block = plan.block;
+  Response r;
+  r.response = frequency_response(cut(c.reference, 1), cut(c.net, 1), cut(speed, 0), settings);
+  for (ResponseLine& line : r.response.lines) line.value /= slope_gain(line.hz, period);
+  r.command_delay_s =
+      delay_of(frequency_response(cut(c.reference, 1), cut(c.command, 1), cut(c.torque, 1), settings));
+  const auto masses = fit_masses(r.response);
+  if (!masses) return std::nullopt;
+  r.masses = *masses;
+  return r;
+}
+
+struct ResponseTry {
+  double bias_rad_s = 0.0, excitation_nm = 0.0;
+};
+
+bool take_response(Guard& guard, const IdentifyPlan& plan, double inertia, const ResponseTry& how,
                    const Identified& out, std::optional<Response>& result) {
+  const double bias = how.bias_rad_s;
   Signal signal;
   signal.kind = SignalKind::multisine;
   signal.from_hz = plan.from_hz;
   signal.to_hz = std::min(plan.to_hz, 0.4 / guard.period_s());
   signal.period = plan.block;
-  signal.amplitude = excitation;
+  signal.amplitude = how.excitation_nm;
   const std::vector<double> once = samples(signal, guard.period_s());
   if (once.empty()) return true;
-  if (!guard.run_at(plan.bias_rad_s, acceleration_of(plan), kSettle_s)) return false;
+  if (!guard.run_at(bias, acceleration_of(plan), kSettle_s)) return false;
 
   SoftSpeedLoop loop(inertia, 4.0, 0.9 * guard.envelope().torque_nm, guard.period_s());
-  loop.begin(out.friction.at(plan.bias_rad_s), plan.bias_rad_s);
+  loop.begin(out.friction.at(bias), bias);
   const std::size_t n = plan.block * static_cast<std::size_t>(plan.blocks + 1);
   const std::size_t first = guard.samples().size();
   std::vector<double> reference, command;
   for (std::size_t i = 0; i < n + 2; ++i) {
     reference.push_back(once[i % once.size()]);
-    const double torque = loop.torque(plan.bias_rad_s, guard.speed_rad_s()) + reference.back();
+    const double torque = loop.torque(bias, guard.speed_rad_s()) + reference.back();
     command.push_back(std::clamp(torque, -guard.envelope().torque_nm, guard.envelope().torque_nm));
     if (!guard.step(Loop::torque, command.back())) return false;
   }
@@ -231,25 +272,20 @@ bool take_response(Guard& guard, const IdentifyPlan& plan, double inertia, doubl
     torque.push_back(guard.samples()[i].torque_nm);
     net.push_back(torque.back() - (out.cogging ? out.cogging->at(angle.back()) : 0.0));
   }
-  const std::vector<double> speed = slope(angle, guard.period_s());
-  // The first block is for what was before it to die away; speed i is of sample i + 1.
-  const auto cut = [&](const std::vector<double>& v, std::size_t shift) {
-    return std::span(v).subspan(plan.block + shift, plan.block * static_cast<std::size_t>(plan.blocks));
-  };
-  SpectrumSettings settings;
-  settings.period_s = guard.period_s();
-  settings.block = plan.block;
-  Response r;
-  r.excitation_nm = excitation;
-  r.response = frequency_response(cut(reference, 1), cut(net, 1), cut(speed, 0), settings);
-  for (ResponseLine& line : r.response.lines) line.value /= slope_gain(line.hz, guard.period_s());
-  r.command_delay_s =
-      delay_of(frequency_response(cut(reference, 1), cut(command, 1), cut(torque, 1), settings));
-  const auto masses = fit_masses(r.response);
-  if (!masses) return true;
-  r.masses = *masses;
-  result = std::move(r);
-  return true;
+  if (!guard.run_at(0.0, acceleration_of(plan), 0.05)) return false;
+  return guard.meanwhile([&] {
+    result = response_of_course(plan, guard.period_s(), {reference, command, angle, torque, net});
+    if (result) result->excitation_nm = how.excitation_nm;
+  });
+}
+
+/// Cogging that passes at about the resonance shakes the load loose: then so fast that it passes beyond it.
+double bias_beyond_resonance(const IdentifyPlan& plan, const Identified& out, const Masses& masses) {
+  constexpr double kNear = 1.6, kBeyond = 1.9;
+  if (!out.cogging || !masses.coupling) return plan.bias_rad_s;
+  const double bias_at_it = kTurn * masses.coupling->resonance_hz / out.cogging->periods;
+  if (plan.bias_rad_s > kNear * bias_at_it) return plan.bias_rad_s;
+  return std::max(plan.bias_rad_s, std::min(plan.fast_rad_s, kBeyond * bias_at_it));
 }
 
 /// Presses the motor against a load at rest, with what cogging takes given back: it could hold the motor in
@@ -257,7 +293,7 @@ bool take_response(Guard& guard, const IdentifyPlan& plan, double inertia, doubl
 class Presser {
  public:
   /// Of the speed loop on the motor alone, rad/s: slow against the dead time of a bus.
-  static constexpr double kCreepBandwidth = 60.0, kAngleTime_s = 0.03;
+  static constexpr double kCreepBandwidth = 60.0;
 
   Presser(Guard& guard, const Identified& found, double motor_inertia, double hold_nm)
       : guard_(guard),
@@ -267,6 +303,9 @@ class Presser {
     // So slow that what the motor carries into the load is less than a third of what holds that.
     if (found.masses.coupling)
       creep_ = 0.3 * hold_nm / std::sqrt(found.masses.coupling->stiffness_nm_rad * motor_inertia);
+    angle_time_s_ = angle_time(found, motor_inertia);
+    // The cogging that is given back lags by so little of its period.
+    if (found.cogging) creep_ = std::min(creep_, 0.4 / (found.cogging->periods * angle_time_s_));
     creep_ = std::clamp(creep_, 0.02, 1.0);
     most_ = 0.3 * hold_nm;
   }
@@ -290,9 +329,9 @@ class Presser {
   /// From there to this torque, slowly against any resonance, and waits; where it stands then.
   bool press(double torque, std::vector<Press>& presses) {
     constexpr double kWait_s = 0.25, kLook_s = 0.1;
-    const double h = guard_.period_s();
+    const double h = guard_.period_s(), wait = std::max(kWait_s, 5.0 * angle_time_s_);
     if (!ramp_to(torque)) return false;
-    for (double t = 0.0; t < kWait_s; t += h)
+    for (double t = 0.0; t < wait; t += h)
       if (!ask(torque)) return false;
     double angle = 0.0, count = 0.0;
     for (double t = 0.0; t < kLook_s; t += h) {
@@ -315,17 +354,26 @@ class Presser {
   }
 
   /// The angle for the cogging is taken slowly: at the motor's resonance on the coupling the way over the bus
-  /// would make a spring of it that swings up.
+  /// would make a spring of it that swings up. So slowly that what it drives there is half of what the
+  /// coupling damps.
+  static double angle_time(const Identified& found, double motor_inertia) {
+    constexpr double kLeast_s = 0.03, kMost_s = 0.2;
+    const auto& coupling = found.masses.coupling;
+    if (!coupling || !found.cogging) return kLeast_s;
+    const double steepest = found.cogging->amplitude_nm * found.cogging->periods;
+    const double damps = coupling->stiffness_nm_rad * std::max(coupling->damping_nm_s, 1e-9);
+    return std::clamp(2.0 * steepest * motor_inertia / damps, kLeast_s, kMost_s);
+  }
   bool ask(double net) {
     const double most = guard_.envelope().torque_nm;
-    angle_ += (1.0 - std::exp(-guard_.period_s() / kAngleTime_s)) * (guard_.answer().position_rad - angle_);
+    angle_ += (1.0 - std::exp(-guard_.period_s() / angle_time_s_)) * (guard_.answer().position_rad - angle_);
     const double cogging = found_.cogging ? found_.cogging->at(angle_) : 0.0;
     return guard_.step(Loop::torque, std::clamp(net + cogging, -most, most));
   }
 
   Guard& guard_;
   const Identified& found_;
-  double gain_, creep_ = 0.1, most_, torque_ = 0.0, angle_;
+  double gain_, creep_ = 0.1, most_, torque_ = 0.0, angle_, angle_time_s_ = 0.0;
 };
 
 /// Friction alone stops it: a stiff speed loop could rattle in the backlash.
@@ -364,7 +412,9 @@ Reach reach_of(const IdentifyPlan& plan, double period) {
   int turns = 0;
   for (const double speed : speeds_of(plan))
     furthest = std::max(furthest, speed * (kSettle_s + hold_of(plan, speed, turns) + 0.25));
-  const double response = plan.bias_rad_s * kTrials * (response_time(plan, period) + kSettle_s + 0.25);
+  // A second one may be faster.
+  const double response =
+      (plan.bias_rad_s + plan.fast_rad_s) * (response_time(plan, period) + kSettle_s + 0.25);
   return {-0.3 * furthest, 1.2 * std::max(furthest, response)};
 }
 
@@ -386,14 +436,17 @@ std::optional<Identified> identify(Guard& guard, const IdentifyPlan& plan, std::
   // Where torque swings more than friction presses, the load comes loose and the response is none of a linear
   // plant: again with less. With too little of it noise spoils the response; the better one counts.
   const double friction_there = std::abs(out.friction.at(plan.bias_rad_s) - out.friction.load_nm);
-  double excitation = std::min(plan.torque_nm, kOfFriction * friction_there);
+  ResponseTry how{plan.bias_rad_s, std::min(plan.torque_nm, kOfFriction * friction_there)};
   std::optional<Response> best;
-  for (int trial = 0; trial < kTrials && (!best || best->masses.misfit > kMisfit);
-       ++trial, excitation *= 0.6) {
+  for (int trial = 0; trial < kTrials; ++trial) {
     guard.stage("response");
     std::optional<Response> response;
-    if (!take_response(guard, plan, inertia, excitation, out, response)) return std::nullopt;
+    if (!take_response(guard, plan, inertia, how, out, response)) return std::nullopt;
     if (response && (!best || response->masses.misfit < best->masses.misfit)) best = std::move(response);
+    const double beyond = best ? bias_beyond_resonance(plan, out, best->masses) : how.bias_rad_s;
+    if (best && best->masses.misfit <= kMisfit && beyond == how.bias_rad_s) break;
+    if (beyond == how.bias_rad_s) how.excitation_nm *= 0.6;
+    how.bias_rad_s = beyond;
   }
   why = "masses";
   if (!best) return std::nullopt;
@@ -403,10 +456,10 @@ std::optional<Identified> identify(Guard& guard, const IdentifyPlan& plan, std::
   out.excitation_nm = best->excitation_nm;
 
   if (out.cogging) {
-    constexpr double kFaster = 1.6;  // up to so much more, runs that were made for friction count, too
-    const double speed = cogging_speed(plan, out);
-    if (!run_for_cogging(guard, plan, speed, spans)) return std::nullopt;
-    if (const auto sized = sized_cogging(guard, spans, out, kFaster * speed)) out.cogging = sized;
+    std::vector<EvenSpan> even;
+    if (!run_for_cogging(guard, plan, cogging_speeds(plan, out), even)) return std::nullopt;
+    if (const auto sized = sized_cogging(guard, even, out)) out.cogging = sized;
+    spans.insert(spans.end(), even.begin(), even.end());
   }
   out.friction_points = friction_points(guard, spans, out.cogging);
   if (const auto again = fit_friction(out.friction_points)) out.friction = *again;

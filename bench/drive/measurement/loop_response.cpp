@@ -44,20 +44,12 @@ std::vector<double> loop_excitation(const LoopResponsePlan& plan, double period)
   return out;
 }
 
-std::optional<LoopResponse> take_loop_response(Guard& guard, const LoopResponsePlan& plan) {
-  const double period = guard.period_s();
-  const std::vector<double> wanted = loop_excitation(plan, period);
-  if (wanted.empty()) return std::nullopt;
-  guard.stage("response");
-  const std::size_t first = guard.samples().size();
-  for (const double v : wanted)
-    if (!guard.step(plan.loop, v)) return std::nullopt;
+namespace {
 
-  std::vector<double> angle, torque;
-  for (std::size_t i = first; i < guard.samples().size(); ++i) {
-    angle.push_back(guard.samples()[i].position_rad);
-    torque.push_back(guard.samples()[i].torque_nm);
-  }
+/// What the course of a run says.
+std::optional<LoopResponse> evaluate(const LoopResponsePlan& plan, double period,
+                                     const std::vector<double>& wanted, const std::vector<double>& angle,
+                                     const std::vector<double>& torque) {
   const std::vector<double> speed = slope(angle, period);  // value i is of sample i + 1
   const std::size_t begin = ramp_samples(plan, period) + plan.block;
   const std::size_t length = plan.block * static_cast<std::size_t>(plan.blocks);
@@ -88,6 +80,27 @@ std::optional<LoopResponse> take_loop_response(Guard& guard, const LoopResponseP
     if (line.hz >= out.closed.valid_from_hz && line.hz <= out.closed.valid_to_hz)
       out.peak_db = std::max(out.peak_db, 20.0 * std::log10(std::abs(line.value)));
   out.extremes = extremes(out.open);
+  return out;
+}
+
+}  // namespace
+
+std::optional<LoopResponse> take_loop_response(Guard& guard, const LoopResponsePlan& plan) {
+  const double period = guard.period_s();
+  const std::vector<double> wanted = loop_excitation(plan, period);
+  if (wanted.empty()) return std::nullopt;
+  guard.stage("response");
+  const std::size_t first = guard.samples().size();
+  for (const double v : wanted)
+    if (!guard.step(plan.loop, v)) return std::nullopt;
+  std::vector<double> angle, torque;
+  for (std::size_t i = first; i < guard.samples().size(); ++i) {
+    angle.push_back(guard.samples()[i].position_rad);
+    torque.push_back(guard.samples()[i].torque_nm);
+  }
+  guard.release();
+  std::optional<LoopResponse> out;
+  guard.meanwhile([&] { out = evaluate(plan, period, wanted, angle, torque); });
   return out;
 }
 

@@ -47,7 +47,8 @@ struct LoopResponse {
 
 /// The whole excitation as set-points, for Guard::accepts(). Empty: it cannot be sampled.
 std::vector<double> loop_excitation(const LoopResponsePlan& plan, double period_s);
-/// On an enabled drive. nullopt: the guard has tripped, or no line of the response is coherent.
+/// On an enabled drive, which is off afterwards. nullopt: the guard has tripped, or no line of the response
+/// is coherent.
 std::optional<LoopResponse> take_loop_response(Guard& guard, const LoopResponsePlan& plan);
 
 }  // namespace servogate::bench

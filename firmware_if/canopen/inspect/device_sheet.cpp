@@ -55,7 +55,7 @@ EdsEntry& place(Eds& sheet, std::uint16_t index, std::uint8_t subindex, bool rec
   entry.name = record ? sub_name(index, subindex, names) : name_of(index, names);
   if (!record) return whole.entry = std::move(entry);
   whole.entry.name = name_of(index, names);
-  whole.entry.type = EdsObjectType::record;
+  whole.entry.type = known_container(index);
   whole.entry.data_type = 0;
   if (names != nullptr)
     if (const auto found = names->objects.find(index); found != names->objects.end()) {

@@ -49,4 +49,10 @@ std::optional<KnownObject> known_object(std::uint16_t index, std::uint8_t subind
   return known;
 }
 
+EdsObjectType known_container(std::uint16_t index) noexcept {
+  for (const std::uint16_t array : {0x1003, 0x1010, 0x1011, 0x1016, 0x1028, 0x1029})
+    if (index == array) return EdsObjectType::array;
+  return EdsObjectType::record;
+}
+
 }  // namespace servogate::canopen

@@ -120,7 +120,7 @@ Eds sheet_of(const std::vector<ReadObject>& objects) {
       continue;
     }
     whole.entry.name = name;
-    whole.entry.type = EdsObjectType::record;
+    whole.entry.type = known_container(o.index);
     whole.entry.data_type = 0;
     const std::string sub =
         o.subindex == 0 ? "Highest sub-index supported" : name + " " + std::to_string(o.subindex);

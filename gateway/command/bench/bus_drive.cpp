@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "drivers/candump/candump_line.hpp"
 #include "drivers/clock.hpp"
@@ -317,7 +318,10 @@ std::unique_ptr<BusDrive> BusDrive::open(ToolBus& bus, const BenchOptions& optio
   return nullptr;
 }
 
-BusDrive::~BusDrive() {
+BusDrive::~BusDrive() { leave(); }
+
+void BusDrive::leave() {
+  if (std::exchange(left_, true)) return;
   bus_.ignore_signals();
   for (int i = 0; i < 1000 && !segment_->leave(image_->now.t_ns); ++i) {
     image_->now.t_ns += period_ns_;

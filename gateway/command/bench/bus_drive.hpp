@@ -57,6 +57,9 @@ class BusDrive final : public bench::BenchDrive {
   static std::unique_ptr<BusDrive> open(ToolBus& bus, const BenchOptions& options, const DriveUse& use,
                                         const std::string& log, int& code);
   ~BusDrive() override;
+  /// Takes the drives out of operation and puts back what was changed; no cycle follows. What takes its time
+  /// comes afterwards: drives that wait for a heartbeat would be left alone.
+  void leave();
   /// Before a run: undoes what runs that were cut off have left in the drive. False: said.
   static bool put_right(ToolBus& bus, const BenchOptions& options);
 
@@ -64,6 +67,7 @@ class BusDrive final : public bench::BenchDrive {
   const DriveFacts& facts(std::size_t axis = 0) const noexcept { return axes_[axis].facts; }
   double period_s() const noexcept override;
   bool cycle(const bench::DriveAsk& ask, bench::DriveAnswer& answer) override;
+  bool lives() const override { return bus_.transport().lockstep == nullptr; }
   bool ended() const override { return bus_.ended() || (use_.key_ends && key_.pressed()); }
   const StopKey& key() const noexcept { return key_; }
   const ObjectRecorder& recorder(std::size_t axis = 0) const noexcept { return *axes_[axis].recorder; }
@@ -111,6 +115,7 @@ class BusDrive final : public bench::BenchDrive {
   image::Nanoseconds opened_ns_ = 0;  ///< the SYNC before
   std::string said_;                  ///< of the bus's events, the last
   int late_ = 0;
+  bool left_ = false;
 };
 
 }  // namespace servogate::gateway::command

@@ -51,6 +51,7 @@ int record_on(ToolBus& bus, const BenchOptions& o, const DriveUse& use, ReadObje
     return kAlarm;
   }
   objects.read(bus, o.node, "after");
+  drive->leave();
   json meta{{"schema", 1},
             {"command", "bench record"},
             {"bus", o.bus},

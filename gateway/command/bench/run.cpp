@@ -171,6 +171,7 @@ int run_several_on(ToolBus& bus, const BenchOptions& options, BenchPlan& plan) {
       });
     for (std::thread& t : threads) t.join();
   }
+  drives->leave();
   const std::string path = options.out + "/path.csv";
   if (const std::string why = report::write_file(path, path_csv(all, drives->period_s())); !why.empty()) {
     complain(kCannotWrite, {path, why});

@@ -260,6 +260,7 @@ int run_on_bus(ToolBus& bus, const char* command, const BenchOptions& o, BenchPl
   const bool found = work(one);
   const bool off = guard->release();
   plan.objects.read(bus, o.node, "after");
+  drive->leave();
   if (const json facts = plan.objects.facts(); !facts.empty()) meta["objects"] = facts;
   return finish(one, found, plan.limits, off);
 }

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "drivers/clock.hpp"
 #include "firmware_if/canopen/301/words/frame_words.hpp"
 #include "firmware_if/canopen/402/objects.hpp"
 #include "firmware_if/canopen/inspect/device_words.hpp"
@@ -93,12 +92,12 @@ void find_nodes(ToolBus& bus, const ScanOptions& options, Nodes& nodes, std::str
     }
     return false;
   };
-  const image::Nanoseconds begin = drivers::clock_ns(CLOCK_MONOTONIC);
+  const image::Nanoseconds begin = bus.now();
   const auto whole = std::llround(std::max(options.seconds * 1e9, options.timeout_ms * 1e6));
   // Twice: who has just been switched on, or was busy, answers the second time.
   for (int round = 1; round <= 2; ++round) {
     if (!ask_device_type(bus, hear)) return;
-    bus.listen(begin + round * whole / 2 - drivers::clock_ns(CLOCK_MONOTONIC), hear);
+    bus.listen(begin + round * whole / 2 - bus.now(), hear);
   }
 }
 

@@ -90,13 +90,14 @@ TEST(ObjectWalk, saves_mapping_entries_that_are_not_in_use_for_whoever_maps_anew
   EXPECT_NE(read_back.find(0x1A00, 8), nullptr);
 }
 
-TEST(ObjectWalk, saves_an_empty_error_history_as_a_record) {
+TEST(ObjectWalk, saves_an_error_history_as_the_array_that_it_is_even_an_empty_one) {
   Records device;
   device.objects[0x1003'00] = {0};
   std::vector<std::string> not_saved;
   const Eds saved =
       saved_configuration(walk(device, 5, {{0x1003, 0x1003}}, kNever), nullptr, 5, 500'000, not_saved);
-  EXPECT_EQ(saved.objects.at(0x1003).entry.type, EdsObjectType::record);
+  EXPECT_EQ(saved.objects.at(0x1003).entry.type, EdsObjectType::array);
+  EXPECT_EQ(read_eds(write_dcf(saved), "saved.dcf").eds.objects.at(0x1003).entry.type, EdsObjectType::array);
   EXPECT_NE(saved.find(0x1003, 0), nullptr);
 }
 
