@@ -27,6 +27,8 @@ image::AlarmNumber alarm_of(path::MasterFault fault) noexcept {
       return alarm::kTapTooDeep;
     case path::MasterFault::no_turn:
       return alarm::kTapNoTurn;
+    case path::MasterFault::starved:
+      return alarm::kThreadStarved;
     case path::MasterFault::none:
       break;
   }
