@@ -118,6 +118,21 @@ void Process::order_tap(const path::ByMaster& master, axis::Spindle& turns) noex
   tap_halted_ = master.halt;
 }
 
+/// The path goes on when they are in step, or as long as the first one is not to turn.
+bool Process::couple_spindles(const Event& e, cycle::ProcessContext& c) noexcept {
+  const axis::Spindle* leader = spindle(0, c);
+  axis::Spindle* follower = spindle(e.number, c);
+  if (leader == nullptr || follower == nullptr) return true;
+  if (!e.flag) {
+    follower->uncouple();
+    return true;
+  }
+  if (stage_ == Stage::entered) follower->couple({e.code, e.code2, e.angle});
+  stage_ = Stage::waiting;
+  const bool turns = leader->mode() == axis::SpindleMode::cw || leader->mode() == axis::SpindleMode::ccw;
+  return follower->synchronous() || !turns || !follower->coupled();
+}
+
 /// In the cycle in which the angle passes a whole revolution, as of the time when a set-point acts.
 bool Process::passes_mark(const Event& e, cycle::ProcessContext& c) noexcept {
   const path::MasterReading now = master(c);

@@ -408,6 +408,31 @@ TEST(Thread, chain_whose_rest_is_not_planned_in_time_is_left_by_the_declared_way
   EXPECT_LE(m.limits(), 1.001);
 }
 
+TEST(Thread, chain_is_left_inside_of_the_limits_wherever_its_master_fails) {
+  using Break = void (*)(Lathe&);
+  const struct {
+    MasterFault fault;
+    Break break_it;
+  } kFaults[] = {{MasterFault::lost, [](Lathe& m) { m.spindle.readable = false; }},
+                 {MasterFault::reversed, [](Lathe& m) { m.spindle.wanted = -10.0; }},
+                 {MasterFault::window, [](Lathe& m) { m.spindle.load = [](double) { return 30.0; }; }}};
+  for (const auto& [fault, break_it] : kFaults)
+    for (const double z : {-0.2, -1.0, -25.0, -26.1, -63.7, -99.0, -120.3}) {
+      Config config = lathe();
+      config.threads.window = fault == MasterFault::window ? 0.002 : 1e9;
+      Lathe m(config);
+      add_chain(m, 250);
+      m.planner.finish();
+      ASSERT_TRUE(m.until([&](const Sample& s) { return s.position[2] < z; })) << z;
+      break_it(m);
+      ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; })) << z;
+      EXPECT_NE(m.why(), "no fault") << z;
+      EXPECT_GT(m.trip.samples.back().position[2], -125.0);
+      EXPECT_NEAR(m.trip.samples.back().position[0], 2.0, 1e-6) << "off the part, at " << z;
+      EXPECT_LE(m.limits(), 1.001) << z;
+    }
+}
+
 TEST(Thread, chain_whose_later_parts_allow_less_is_cut_inside_of_their_limits) {
   Config config = lathe();
   config.limits[0].acceleration = 100.0;

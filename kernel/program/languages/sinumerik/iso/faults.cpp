@@ -80,8 +80,15 @@ constexpr text::Entry kMessages[] = {
      "{0}: направление поворотной оси в этой версии не выбирается: задайте AC или IC"},
     {"P885", "{0}: a rotation goes about the axis across the plane: select the plane and write RPL=",
      "{0}: поворот идёт вокруг оси, перпендикулярной плоскости: выберите плоскость и задайте RPL="},
+    {"P886",
+     "{0}: the machine has no second spindle that may follow the first one: set `coupling` of the second "
+     "[[spindle]] in the machine file",
+     "{0}: на станке нет второго шпинделя, который может следовать за первым: задайте `coupling` второго "
+     "[[spindle]] в файле станка"},
+    {"P887", "{0}: at S{1} the second spindle would turn at {2} rpm, its fastest speed is {3} rpm",
+     "{0}: при S{1} второй шпиндель вращался бы с {2} об/мин, его наибольшая частота {3} об/мин"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::rotation_axis) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::polygon_speed) + 1);
 
 }  // namespace
 

@@ -58,6 +58,8 @@ enum class Wrong {
   beside_call,
   rotary_way,
   rotation_axis,
+  polygon_spindle,
+  polygon_speed,
 };
 
 std::span<const text::Entry> messages();
