@@ -35,6 +35,12 @@ void Spindle::configure(const SpindleConfig& config, int index) {
 }
 
 void Spindle::order(SpindleMode mode, double rpm) noexcept {
+  if (link_.on() && mode != SpindleMode::stop) {
+    cannot_ = alarm::kSpindleCoupled;
+    return;
+  }
+  parting_ = link_.on() || (parting_ && mode == SpindleMode::stop);
+  link_.end();
   const bool analog = config_.inverter.has_value();
   const bool no_angle = mode == SpindleMode::orient && (analog || !config_.encoder);
   const bool no_relay = mode == SpindleMode::ccw && (analog ? !inverter_.reverses() : !config_.reverses);
@@ -52,6 +58,10 @@ void Spindle::order(SpindleMode mode, double rpm) noexcept {
 }
 
 void Spindle::turn(double degrees, double rpm) noexcept {
+  if (link_.on()) {
+    cannot_ = alarm::kSpindleCoupled;
+    return;
+  }
   const bool measures = !config_.inverter && config_.encoder;
   if (!measures || !angle_known_ || !std::isfinite(degrees)) {
     order(SpindleMode::stop, 0.0);
@@ -119,9 +129,12 @@ void Spindle::read(image::ProcessImage& image) noexcept {
   if (!in.online) {
     actual_rpm_ = 0.0;
     // An angle that is counted from a zero that is gone is no goal any more: nothing turns again unasked.
-    if (mode_ == SpindleMode::turn) {
+    if (mode_ == SpindleMode::turn || link_.on()) {
+      if (link_.on())
+        events_.add({alarm::kSpindleSyncLost, config_.coupling_window, std::abs(phase_error_deg_)});
+      const bool turns = mode_ == SpindleMode::turn;
       order(SpindleMode::stop, 0.0);
-      cannot_ = alarm::kSpindleOrientTimeout;
+      if (turns) cannot_ = alarm::kSpindleOrientTimeout;
     }
     marked_ = began_ = angle_known_ = false;
     master_.valid = false;
@@ -189,7 +202,7 @@ double Spindle::held_rpm(double error, double most_rpm) noexcept {
 /// Signed speed of the order with its override, whatever the PLC permits.
 double Spindle::ordered_speed() const noexcept {
   if ((mode_ != SpindleMode::cw && mode_ != SpindleMode::ccw) || ordered_rpm_ == 0.0) return 0.0;
-  const double most = std::min(gears_.max_rpm(config_.max_rpm), limit_rpm_);
+  const double most = std::min(fastest(), leading_.rpm);
   const double rpm = std::clamp(ordered_rpm_ * override_ratio_, std::min(config_.min_rpm, most), most);
   return mode_ == SpindleMode::cw ? rpm : -rpm;
 }
@@ -205,6 +218,8 @@ double Spindle::wanted_rpm() noexcept {
       return std::copysign(std::min(gears_.config().change_rpm, ordered_rpm_), ordered_speed());
     case SpindleMode::turn:
       return held_rpm(angle_error(), std::min(ordered_rpm_, gears_.max_rpm(config_.max_rpm)));
+    case SpindleMode::follow:
+      return std::clamp(led_.rpm, -fastest(), fastest());
     case SpindleMode::orient:
       break;
   }
@@ -215,8 +230,10 @@ double Spindle::wanted_rpm() noexcept {
 
 void Spindle::follow_drive(double wanted, double dt) noexcept {
   on_ = drive_.online && drive_.state == DriveState::operation_enabled;
-  const double step = config_.acceleration * dt;
+  const double step = ramp_rpm_s() * dt;
   command_rpm_ = on_ ? command_rpm_ + std::clamp(wanted - command_rpm_, -step, step) : actual_rpm_;
+  if (command_rpm_ == 0.0 || !on_) parting_ = false;
+  hold_to_angle(dt);
 }
 
 void Spindle::follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept {
@@ -260,11 +277,13 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   if (reaction_ >= Reaction::stop_and_power_off) order(SpindleMode::stop, 0.0);
   cannot_ = 0;
   oriented_ = false;
+  watch_coupling(dt);
   double wanted = std::clamp(wanted_rpm(), -limit_rpm_, limit_rpm_);
   if (config_.inverter)
     follow_inverter(image, wanted, dt);
   else
     follow_drive(wanted, dt);
+  track_command(image.now);
   const bool reached = on_ && command_rpm_ == wanted;
   const bool known = config_.source < 0 || drive_.online || !turned_;
   zero_speed_ = known && std::abs(actual_rpm_) <= config_.zero_speed_rpm;
@@ -274,6 +293,7 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   const bool told = !config_.target_bit || wanted == 0.0 || (drive_.statusword & kTargetReached) != 0;
   const bool in_gear = !gears_.changing();
   at_speed_ = turning && enable_ && in_gear && reached && told && std::abs(actual_rpm_ - wanted) <= window;
+  if (mode_ == SpindleMode::follow) at_speed_ = synchronous();
   supervise(dt, enable_ && in_gear && reached && ordered_speed() != 0.0);
 
   off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
@@ -281,6 +301,7 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   out.command_rpm = on_ ? command_rpm_ : 0.0;
   out.running = mode_ != SpindleMode::stop || !zero_speed_;
   out.at_speed = at_speed_;
+  leading_ = {};
   if (!config_.inverter) write_drive(out);
   write_interface(image);
 }
@@ -298,7 +319,8 @@ void Spindle::write_drive(image::SpindleImage& out) const noexcept {
   drive.latch_source = image::LatchSource::zero_mark;
   drive.latch_arm = !marked_ && drive_.online;
   drive.position_counts = drive_.position_counts;
-  drive.velocity_counts_s = on_ ? scale_.velocity_counts(command_rpm_ / 60.0) * gears_.ratio() : 0.0;
+  drive.velocity_counts_s =
+      on_ ? scale_.velocity_counts((command_rpm_ + correction_rpm_) / 60.0) * gears_.ratio() : 0.0;
 }
 
 void Spindle::supervise(double dt, bool speed_due) noexcept {
@@ -362,6 +384,8 @@ bool Spindle::settled() const noexcept {
     case SpindleMode::orient:
     case SpindleMode::turn:
       return oriented_;
+    case SpindleMode::follow:
+      return synchronous();
     default:
       return at_speed_;
   }

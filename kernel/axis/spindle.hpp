@@ -6,12 +6,14 @@
 #include "firmware_if/image/process_image.hpp"
 #include "kernel/axis/alarms/axis_alarms.hpp"
 #include "kernel/axis/config/axis_config.hpp"
+#include "kernel/axis/coupling/angle_track.hpp"
+#include "kernel/axis/coupling/coupling.hpp"
 #include "kernel/axis/gears/gearbox.hpp"
 #include "kernel/axis/setpoint/scale.hpp"
 
 namespace servogate::axis {
 
-enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient, turn };
+enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient, turn, follow };
 
 /// Where an encoder stands, as the master of a path.
 struct SpindleAngle {
@@ -37,6 +39,10 @@ struct SpindleAngle {
 /// reaches the speed); another one than that in force brings the spindle to rest, or to its speed for
 /// changing, changes, and then turns. A speed that is only adjusted stays within the gear. A gear that is not
 /// confirmed is a stop and an alarm.
+///
+/// One that follows another (couple()) turns by the other's speed and is held to its angle by the position
+/// loop; the leader turns no faster and speeds up no more than the follower can go with. A stop of the
+/// follower ends the coupling: it ramps as the leader would.
 class Spindle {
  public:
   /// `index` is the spindle's place in the image. Not for the cycle.
@@ -52,6 +58,18 @@ class Spindle {
   /// held there as an oriented stop is. Where the angle is not known it is a stop and an alarm. real-time
   /// safe.
   void turn(double degrees, double rpm) noexcept;
+  /// Follows the leader's angle from now on; an order to stop or uncouple() ends it, any other one is refused
+  /// by an alarm. real-time safe.
+  void couple(const CouplingOrder& order) noexcept;
+  void uncouple() noexcept;
+  bool coupled() const noexcept { return link_.on(); }
+  /// Coupled, or still braking behind it: it has a leader.
+  bool has_leader() const noexcept { return coupled() || parting_; }
+  bool synchronous() const noexcept { return link_.synchronous(); }
+  /// What a follower asks of its leader, before the leader's command() in each cycle. real-time safe.
+  void lead(const Spindle& follower) noexcept;
+  /// The leader, which has had its command() of this cycle; before the follower's own. real-time safe.
+  void follow(const Spindle& leader, const image::CycleTime& now) noexcept;
   /// Another speed of the mode in force, as often as is liked: what is waited for goes on. real-time safe.
   void adjust(double rpm) noexcept;
   SpindleMode mode() const noexcept { return mode_; }
@@ -79,6 +97,13 @@ class Spindle {
 
  private:
   void follow_drive(double wanted, double dt) noexcept;
+  // spindle_coupling.cpp
+  void hold_to_angle(double dt) noexcept;
+  void track_command(const image::CycleTime& now) noexcept;
+  double behind_turns(bool& led) const noexcept;
+  void watch_coupling(double dt) noexcept;
+  double fastest() const noexcept;
+  double ramp_rpm_s() const noexcept;
   void follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept;
   void write_drive(image::SpindleImage& out) const noexcept;
   void read_angle(const image::DriveFeedback& in, const image::CycleTime& now) noexcept;
@@ -132,6 +157,19 @@ class Spindle {
   double reset_left_s_ = 0.0;
   bool raised_speed_ = false, raised_orient_ = false, raised_fault_ = false;
   bool marked_ = false;  ///< the zero mark has been captured
+
+  Coupling link_;           ///< to the leader
+  Led led_;                 ///< by it, in this cycle
+  double led_rpm_s_ = 0.0;  ///< ramp with which it and its leader go together
+  bool parting_ = false;    ///< it brakes behind its coupling
+  /// What followers ask of it, in this cycle.
+  struct Leading {
+    bool by_setpoint = false;
+    double rpm_s = 1e12, rpm = 1e12;
+  } leading_;
+  AngleTrack track_;  ///< of the commanded angle, of one that leads by it
+  double correction_rpm_ = 0.0, phase_error_deg_ = 0.0;
+  double apart_s_ = 0.0;  ///< coupled and turning, and not in step
 };
 
 }  // namespace servogate::axis

@@ -31,9 +31,12 @@ enum class EventKind : std::uint8_t {
   block_end,        ///< STEP mode: waits for the operator between blocks
   window,  ///< axis `number` counts as in position within `value`, mm or degrees; 0: as the machine has it
   feed_override,  ///< it counts from here on, with `flag`
-  warning,        ///< at once: the control does something otherwise than the program asks
-  error,          ///< the interpreter found an error in the next block
-  end,            ///< M02, M30 or the last line
+  /// Spindle `number` follows the first, `code2` of its turns for `code`, `angle` ahead; without `flag` no
+  /// more
+  spindle_coupling,
+  warning,  ///< at once: the control does something otherwise than the program asks
+  error,    ///< the interpreter found an error in the next block
+  end,      ///< M02, M30 or the last line
 };
 
 /// path::Tag::command of this room: the run above, and below how many of its blocks have been executed. Equal

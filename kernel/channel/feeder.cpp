@@ -157,6 +157,11 @@ void Feeder::begin(const FeederOrder& order) {
   if (order.manual_data) manual = manual_interpreter(position_);
   if (manual_runs_) manual_ = std::move(interpreter_);
   manual_runs_ = order.manual_data;
+  touch_.reset();
+  if (order.manual_data && touch_order_) {
+    touch_.emplace(*std::exchange(touch_order_, std::nullopt), position_);
+    touches_.put(generation_, *touch_);
+  }
   if (manual)
     manual->mdi(manual_block_);
   else
@@ -177,6 +182,10 @@ void Feeder::begin(const FeederOrder& order) {
 }
 
 void Feeder::read_one() {
+  if (touch_) {
+    if (const std::optional<program::Command> command = touch_->next()) return accept(*command);
+    touch_.reset();
+  }
   const program::Step step = interpreter_->next(view_, synchronised_);
   synchronised_ = false;
   if (const std::vector<std::string>& files = interpreter_->files(); files.size() != files_told_) {

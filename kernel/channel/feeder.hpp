@@ -15,6 +15,7 @@
 #include "kernel/channel/motion/infeed.hpp"
 #include "kernel/channel/motion/path_elements.hpp"
 #include "kernel/channel/motion/tap_commands.hpp"
+#include "kernel/channel/motion/touch.hpp"
 #include "kernel/channel/motion/ways.hpp"
 #include "kernel/channel/neighbours.hpp"
 #include "kernel/channel/program_texts.hpp"
@@ -114,7 +115,17 @@ class Feeder {
   /// MDI begins with the power-on modes again.
   void forget_manual() { manual_.reset(); }
   /// The block that the next start in MDI mode runs.
-  void set_manual_block(std::string block) { manual_block_ = std::move(block); }
+  void set_manual_block(std::string block) {
+    manual_block_ = std::move(block);
+    touch_order_.reset();
+  }
+  /// Instead of a block the next start in MDI mode measures; once.
+  void set_touch(const TouchOrder& order) {
+    touch_order_ = order;
+    manual_block_.clear();
+  }
+  /// What the last such start has found.
+  const Touches& touches() const noexcept { return touches_; }
   /// A run is being read or about to be: load() has to wait. False once its last motion has been read.
   bool reads() const noexcept {
     return state_ == State::feeding || state_ == State::syncing || state_ == State::probing ||
@@ -195,6 +206,9 @@ class Feeder {
   InterpreterFactory factory_;
   RestartFactory once_;  ///< instead, for the next run
   std::string manual_block_;
+  std::optional<TouchOrder> touch_order_;
+  std::optional<Touch> touch_;  ///< of the run
+  Touches touches_;
   std::optional<program::Interpreter> interpreter_;
   std::optional<program::Interpreter> manual_;  ///< modes that MDI left, between two blocks
   bool manual_runs_ = false;                    ///< interpreter_ runs a typed block

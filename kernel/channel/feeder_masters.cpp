@@ -57,7 +57,9 @@ void Feeder::take_touch(const FeederOrder& order) {
   position_ = order.position;
   planner_.restart(elements_.path_position(position_));
   ways_.restart();
-  interpreter_->probed(order.touched);
+  if (!touch_) return interpreter_->probed(order.touched);
+  touch_->touched(order.touched[static_cast<std::size_t>(touch_->axis())]);
+  touches_.put(generation_, *touch_);
 }
 
 }  // namespace servogate::channel

@@ -38,6 +38,14 @@ class Translation {
     order.event.flag = o.effective;
     return order;
   }
+  Result operator()(const program::SpindleCoupling& s) const {
+    ForCycle order = coded(EventKind::spindle_coupling, s.leader);
+    order.event.code2 = s.follower;
+    order.event.angle = s.phase_deg;
+    order.event.flag = s.on;
+    order.event.number = 1;
+    return order;
+  }
   Result operator()(const program::SpindleMark&) const { return ForCycle{EventKind::spindle_mark, {}}; }
   Result operator()(const program::Tool& t) const {
     if (t.activate) return std::nullopt;

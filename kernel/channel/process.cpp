@@ -74,6 +74,11 @@ void Process::set_manual_block(std::string block) {
   changes_.fetch_add(1, std::memory_order_release);
 }
 
+void Process::set_touch(const TouchOrder& order) {
+  feeder_.set_touch(order);
+  changes_.fetch_add(1, std::memory_order_release);
+}
+
 // -- in the cycle
 // --------------------------------------------------------------------------------------------------------
 

@@ -53,6 +53,11 @@ class Process final : public cycle::ProcessInCycle {
   }
   void forget_manual();
   void set_manual_block(std::string block);
+  /// The next start in MDI mode measures, instead of a block; once. Behind it the axes stand where they
+  /// began.
+  void set_touch(const TouchOrder& order);
+  /// What it has found; for any thread outside the cycle.
+  Touches::Found touches() const { return feeder_.touches().found(); }
   /// How often one of the above was called; the cycle sees it as the last of its crossings.
   std::uint64_t changes() const noexcept { return changes_.load(std::memory_order_acquire); }
   /// Reads ahead and plans; see Feeder::work().
@@ -182,6 +187,7 @@ class Process final : public cycle::ProcessInCycle {
   bool handshake(HandshakeWord word, std::int32_t code, double value, const Event& event,
                  cycle::ProcessContext& c) noexcept;
   bool order_spindle(const Event& event, cycle::ProcessContext& c) noexcept;
+  bool couple_spindles(const Event& event, cycle::ProcessContext& c) noexcept;
   bool in_position(cycle::ProcessContext& c) const noexcept;
   void surface_speed(cycle::ProcessContext& c) noexcept;
   void stop_spindles(cycle::ProcessContext& c) noexcept;

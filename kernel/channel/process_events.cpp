@@ -134,6 +134,8 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
     case EventKind::window:
       if (axis::Axis& a = c.axes[e.number]; a.process() == config_.index) a.set_in_position_window(e.value);
       return true;
+    case EventKind::spindle_coupling:
+      return couple_spindles(e, c);
     case EventKind::feed_override:
       override_effective_ = e.flag;
       return true;

@@ -27,6 +27,8 @@ image::AlarmNumber alarm_of(path::MasterFault fault) noexcept {
       return alarm::kTapTooDeep;
     case path::MasterFault::no_turn:
       return alarm::kTapNoTurn;
+    case path::MasterFault::starved:
+      return alarm::kThreadStarved;
     case path::MasterFault::none:
       break;
   }
@@ -114,6 +116,21 @@ void Process::order_tap(const path::ByMaster& master, axis::Spindle& turns) noex
                 master.turn_rpm > 0.0 ? master.turn_rpm : tap_rpm_);
   }
   tap_halted_ = master.halt;
+}
+
+/// The path goes on when they are in step, or as long as the first one is not to turn.
+bool Process::couple_spindles(const Event& e, cycle::ProcessContext& c) noexcept {
+  const axis::Spindle* leader = spindle(0, c);
+  axis::Spindle* follower = spindle(e.number, c);
+  if (leader == nullptr || follower == nullptr) return true;
+  if (!e.flag) {
+    follower->uncouple();
+    return true;
+  }
+  if (stage_ == Stage::entered) follower->couple({e.code, e.code2, e.angle});
+  stage_ = Stage::waiting;
+  const bool turns = leader->mode() == axis::SpindleMode::cw || leader->mode() == axis::SpindleMode::ccw;
+  return follower->synchronous() || !turns || !follower->coupled();
 }
 
 /// In the cycle in which the angle passes a whole revolution, as of the time when a set-point acts.

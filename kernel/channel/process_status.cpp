@@ -141,6 +141,14 @@ image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcep
       wait = of(WaitReason::dwell);
       wait.value = event_.value;
       return wait;
+    case EventKind::spindle_coupling:
+      wait = of(WaitReason::signal);  // the second spindle is at speed when it is in step
+      if (const axis::Spindle* follower = spindle(event_.number, c); follower != nullptr)
+        wait.place =
+            at(image::field(image::kSpindleFields, "at_speed"), image::spindle_base(follower->index()));
+      wait.compare = image::Compare::eq;
+      wait.value = 1.0;
+      return wait;
     case EventKind::stop:
       return of(WaitReason::program_stop);
     case EventKind::optional_stop:

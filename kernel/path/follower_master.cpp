@@ -38,14 +38,16 @@ bool Follower::begin_by_master() noexcept {
     }
     if (span.stop) break;
   }
+  const bool unknown = pieces == kPiecesLookedAt || !master_.ends();
   for (double& axis : along_)  // a rounded corner may take all that an axis has
-    if (pieces == kPiecesLookedAt || (bends && axis > 0.0)) axis = 1.0;
+    if (unknown || (bends && axis > 0.0)) axis = 1.0;
   return true;
 }
 
 void Follower::follow_master() noexcept {
   const bool rests = master_.left();
   const bool leave = stopping_ || (hold_ && config_.threads.hold_retracts && !master_.taps());
+  master_.extend(window_);
   master_.step(estimate_, reading_, rest_asked(), leave);
   if (rests) retract_.path_rests(config_);
   if (master_.leaving()) return move_off_path();

@@ -50,6 +50,8 @@ void check_station_devices(const LoadResult& loaded, Reading& reading);
 void check_gpio_lines(const MachineConfig& machine, Reading& reading);
 /// Boards, and axes whose amplifier is on one.
 void check_boards(const MachineConfig& machine, Reading& reading);
+/// Spindles that follow another one.
+void check_couplings(const MachineConfig& machine, Reading& reading);
 /// Gear ranges of spindles.
 void check_gears(const MachineConfig& machine, Reading& reading);
 

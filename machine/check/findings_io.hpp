@@ -28,6 +28,19 @@ inline constexpr text::Entry kGearsEncoder{"machine.gears_encoder",
                                            "spindle is not known",
                                            "шпиндель {0}: `{1}` несовместим с `gears`: за редуктором привод "
                                            "считает на двигателе, угол шпинделя неизвестен"};
+inline constexpr text::Entry kCouplingWindowAlone{
+    "machine.coupling_window", "spindle {0}: `coupling_window` does nothing without `coupling`",
+    "шпиндель {0}: `coupling_window` без `coupling` ни на что не влияет"};
+inline constexpr text::Entry kCouplingFirst{
+    "machine.coupling_first",
+    "spindle {0}: `coupling` is for the second spindle of a process: the first one leads",
+    "шпиндель {0}: `coupling` задаётся второму шпинделю процесса: первый — ведущий"};
+inline constexpr text::Entry kCouplingEncoder{
+    "machine.coupling_encoder",
+    "spindle {0}: `coupling` needs the angle of both spindles, and spindle {1} has no drive with an encoder "
+    "(`drive`, counts_per_rev)",
+    "шпиндель {0}: для `coupling` нужен угол обоих шпинделей, а у шпинделя {1} нет привода с датчиком "
+    "(`drive`, counts_per_rev)"};
 inline constexpr text::Entry kGearOrder{
     "machine.gear_order",
     "spindle {0}: gear \"{1}\" reaches {2} rpm, no more than the gear before it: slow ones first",

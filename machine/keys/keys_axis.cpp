@@ -330,6 +330,12 @@ const Section& section_of<GearConfig>() {
 }
 
 template <>
+std::span<const std::string_view> choices_of<Coupling>() {
+  static constexpr std::string_view kNames[] = {"none", "setpoint", "measured"};
+  return kNames;
+}
+
+template <>
 const Section& section_of<SpindleConfig>() {
   using C = SpindleConfig;
   static const Key keys[] = {
@@ -411,6 +417,17 @@ const Section& section_of<SpindleConfig>() {
                             "угол ориентированного останова в градусах"),
       key<&C::orient_speed>("orient_speed", {.unit = Unit::rpm, .min = 0, .max = 10000},
                             "speed of the oriented stop", "частота вращения при ориентации"),
+      key<&C::coupling>(
+          "coupling", {},
+          "of the second spindle of a process: by what angle it follows the first one when a program couples "
+          "them (G51.2): its set-point, to which the first one is then held, or as it is measured",
+          "у второго шпинделя процесса: за каким углом первого он следует, когда программа их связывает "
+          "(G51.2): за заданным, по которому тогда ведётся и первый, или за измеренным"),
+      key<&C::coupling_window>(
+          "coupling_window", {.min = 0.01, .max = 90},
+          "so far, in degrees, a coupled spindle may be off the angle it is led to; further off it is alarm "
+          "1210",
+          "на столько градусов связанный шпиндель может отстоять от заданного угла; дальше — авария 1210"),
   };
   static const Section section{"a spindle", "шпиндель", keys, &default_object<C>};
   return section;

@@ -81,6 +81,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_gpio_lines(machine, reading);
   check_boards(machine, reading);
   check_gears(machine, reading);
+  check_couplings(machine, reading);
   check_devices(result, reading);
   check_station_devices(result, reading);
   check_inverters(result, reading);

@@ -361,6 +361,92 @@ TEST(Thread, chain_that_grows_faster_is_left_inside_of_the_limits_of_the_axis_th
   EXPECT_LE(m.limits(), 1.001);
 }
 
+/// `parts` blocks of 0.5 mm, of two leads in turn that differ so little that the thread is one of their mean;
+/// none shares a span with its neighbour.
+void add_chain(Lathe& m, int parts) {
+  m.lead = 2.0 / (1.0 / 1.5 + 1.0 / 1.503);
+  for (int n = 1; n <= parts; ++n) m.add(thread_to(0, -0.5 * n, n % 2 == 0 ? 1.503 : 1.5));
+}
+
+TEST(Thread, chain_of_any_number_of_parts_begins_and_keeps_its_angle_to_its_end) {
+  for (const int parts : {60, 130, 1000}) {
+    Lathe m;
+    add_chain(m, parts);
+    ASSERT_TRUE(m.finish()) << m.why();
+    EXPECT_NEAR(m.trip.samples.back().position[2], -0.5 * parts, 1e-9);
+    EXPECT_GT(m.locked, 100 * parts / 15) << "10 revolutions/s, 1.5 mm in each: most of the way is locked";
+    EXPECT_LE(m.worst_mm, 0.012);
+    EXPECT_LE(m.limits(), 1.001);
+  }
+}
+
+TEST(Thread, chain_whose_end_is_far_away_in_time_begins_before_it_is_known) {
+  Config slow = lathe();
+  for (AxisLimits& axis : slow.limits) axis.velocity = 20.0;
+  Lathe m(slow);
+  m.lead = 1.5;
+  for (int n = 1; n <= 12; ++n) {  // 9 s at the fastest, of which 2 s are planned ahead
+    while (!m.planner.wants_more()) m.step();
+    Element e = thread_to(n % 2 == 0 ? 0.0 : 0.2, -15.0 * n, 1.5);
+    e.lock.per_turn = 1.5 * std::hypot(0.2, 15.0) / 15.0;
+    m.add(e);
+  }
+  ASSERT_TRUE(m.finish()) << m.why();
+  EXPECT_NEAR(m.trip.samples.back().position[2], -180.0, 1e-9);
+  EXPECT_LE(m.worst_mm, 0.020);
+  EXPECT_LE(m.limits(), 1.001);
+}
+
+TEST(Thread, chain_whose_rest_is_not_planned_in_time_is_left_by_the_declared_way) {
+  Lathe m;
+  add_chain(m, 400);  // and no end of it
+  ASSERT_TRUE(m.until([](const Sample& s) { return s.master.fault != MasterFault::none; }));
+  EXPECT_EQ(m.trip.samples.back().master.fault, MasterFault::starved);
+  ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; }));
+  EXPECT_GT(m.trip.samples.back().position[2], -200.0) << "it does not come to where nothing is known";
+  EXPECT_GT(m.trip.samples.back().position[0], 1.9) << "off the part, by the retract";
+  EXPECT_LE(m.limits(), 1.001);
+}
+
+TEST(Thread, chain_is_left_inside_of_the_limits_wherever_its_master_fails) {
+  using Break = void (*)(Lathe&);
+  const struct {
+    MasterFault fault;
+    Break break_it;
+  } kFaults[] = {{MasterFault::lost, [](Lathe& m) { m.spindle.readable = false; }},
+                 {MasterFault::reversed, [](Lathe& m) { m.spindle.wanted = -10.0; }},
+                 {MasterFault::window, [](Lathe& m) { m.spindle.load = [](double) { return 30.0; }; }}};
+  for (const auto& [fault, break_it] : kFaults)
+    for (const double z : {-0.2, -1.0, -25.0, -26.1, -63.7, -99.0, -120.3}) {
+      Config config = lathe();
+      config.threads.window = fault == MasterFault::window ? 0.002 : 1e9;
+      Lathe m(config);
+      add_chain(m, 250);
+      m.planner.finish();
+      ASSERT_TRUE(m.until([&](const Sample& s) { return s.position[2] < z; })) << z;
+      break_it(m);
+      ASSERT_TRUE(m.until([](const Sample& s) { return s.state == FollowerState::stopped; })) << z;
+      EXPECT_NE(m.why(), "no fault") << z;
+      EXPECT_GT(m.trip.samples.back().position[2], -125.0);
+      EXPECT_NEAR(m.trip.samples.back().position[0], 2.0, 1e-6) << "off the part, at " << z;
+      EXPECT_LE(m.limits(), 1.001) << z;
+    }
+}
+
+TEST(Thread, chain_whose_later_parts_allow_less_is_cut_inside_of_their_limits) {
+  Config config = lathe();
+  config.limits[0].acceleration = 100.0;
+  config.limits[0].jerk = 1000.0;
+  Lathe m(config);
+  for (int n = 1; n <= 200; ++n) {
+    const double x = n < 150 || n % 2 == 0 ? 0.0 : 0.003;
+    m.add(thread_to(x, -0.5 * n, n % 2 == 0 ? 1.503 : 1.5));
+  }
+  ASSERT_TRUE(m.finish()) << m.why();
+  EXPECT_NEAR(m.trip.samples.back().position[2], -100.0, 1e-9);
+  EXPECT_LE(m.limits(), 1.001);
+}
+
 TEST(Thread, is_left_to_the_end_of_the_travel_and_no_further) {
   for (const double sign : {1.0, -1.0}) {
     Config config = lathe();

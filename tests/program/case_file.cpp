@@ -118,6 +118,8 @@ class Reader {
       for (const auto& [letter, number] : axis_values(value))
         for (std::size_t a = 0; a < case_.machine.axes.size(); ++a)
           if (case_.machine.axes[a].letter == letter) case_.start[a] = number;
+    } else if (name[0] == "coupled") {
+      case_.machine.coupled_max_rpm = std::stod(value);
     } else if (name[0] == "spindles") {
       case_.machine.spindles = std::stoi(value);
     } else if (name[0] == "spindle") {

@@ -313,6 +313,9 @@ bool Control::carry_out(const ProgramChange& change) {
     case ProgramChange::Kind::block:
       p.set_manual_block(change.block);
       break;
+    case ProgramChange::Kind::touch:
+      if (const auto order = channel::touch_from(change.block)) p.set_touch(*order);
+      break;
     case ProgramChange::Kind::modes:
       p.forget_manual();
       break;

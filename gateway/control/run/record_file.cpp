@@ -30,7 +30,7 @@ constexpr std::size_t kChunkHead = 8;  // length, checksum
 // First byte of a chunk: what it holds.
 constexpr char kCycleChunk = 'c', kChangeChunk = 'p', kSubprogramChunk = 's', kLogicChunk = 'l';
 /// Index = ProgramChange::Kind.
-constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "modes", "restart"};
+constexpr std::string_view kChangeNames[] = {"program", "tables", "block", "touch", "modes", "restart"};
 /// Index = plc::LogicChange::Kind.
 constexpr std::string_view kLogicNames[] = {"load", "force", "release", "release_all"};
 constexpr machine::StatePart kTableParts[] = {machine::StatePart::origins, machine::StatePart::tools,

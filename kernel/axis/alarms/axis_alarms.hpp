@@ -48,6 +48,9 @@ inline constexpr AlarmNumber kSpindleOutputLost = 1206;
 inline constexpr AlarmNumber kSpindleDriveLost = 1207;
 inline constexpr AlarmNumber kSpindleNotReady = 1208;
 inline constexpr AlarmNumber kSpindleGear = 1209;
+inline constexpr AlarmNumber kSpindleSyncLost = 1210;
+inline constexpr AlarmNumber kSpindleNotSynchronous = 1211;
+inline constexpr AlarmNumber kSpindleCoupled = 1212;
 
 inline constexpr AlarmNumber kDriveFault = 2001;
 inline constexpr AlarmNumber kDriveRefuses = 2002;

@@ -294,6 +294,35 @@ inline constexpr image::AlarmRow kAxisRows[] = {
      "Проверьте редуктор: давление, клапан, положение вилки и её датчик (`confirm` ступени). Выполните сброс "
      "и "
      "снова включите шпиндель."},
+    {alarm::kSpindleSyncLost,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"spindle.sync_lost",
+      "{0}: it is {1}° off the angle of the first spindle, {2}° allowed (coupling_window)",
+      "{0}: отстоит от угла первого шпинделя на {1}°, допустимо {2}° (coupling_window)"},
+     "Look at part and tool. See what slowed one of the spindles down: its load, its enable or its drive; or "
+     "an "
+     "acceleration in the machine file that it does not reach.",
+     "Осмотрите деталь и инструмент. Выясните, что затормозило один из шпинделей: нагрузка, разрешение или "
+     "привод; либо ускорение в файле станка, которого он не достигает."},
+    {alarm::kSpindleNotSynchronous,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"spindle.not_synchronous",
+      "{0}: it does not come into step with the first spindle; it is {1}° off, {2}° allowed",
+      "{0}: не входит в синхронизм с первым шпинделем; отстоит на {1}°, допустимо {2}°"},
+     "See whether it turns (enable, drive), whether its drive tells a zero mark, and whether coupling_window "
+     "is "
+     "wider than its speed is uneven.",
+     "Проверьте, вращается ли он (разрешение, привод), выдаёт ли привод нулевую метку и не меньше ли "
+     "coupling_window неравномерности его вращения."},
+    {alarm::kSpindleCoupled,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"spindle.coupled", "{0}: it follows the first spindle and takes no other order to turn",
+      "{0}: следует за первым шпинделем и других заданий вращения не принимает"},
+     "End the coupling first (G50.2).",
+     "Сначала отмените связь (G50.2)."},
     {alarm::kDriveFault,
      image::Reaction::stop_on_path,
      image::ResetCondition::cause_gone,

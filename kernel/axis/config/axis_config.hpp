@@ -113,6 +113,13 @@ struct AxisConfig {
       image::Reaction::stop_on_path;  ///< to the loss of its drive, or a stronger one
 };
 
+/// By what a spindle follows another one, where a program couples them.
+enum class CouplingBy : std::uint8_t {
+  none,      ///< it is never coupled
+  setpoint,  ///< the set-point angle, to which the other one is held by its position
+  measured,  ///< the angle that the other one's encoder shows
+};
+
 /// A spindle, as plain data from the machine file.
 struct SpindleConfig {
   int process = 0;                       ///< whose S, M3, M4, M5 and M19 it obeys
@@ -140,6 +147,8 @@ struct SpindleConfig {
   bool target_bit = false;  ///< at speed only where its drive says so, too (statusword bit 10)
   image::Reaction loss_reaction = image::Reaction::stop_on_path;  ///< of one with a source, or stronger
   std::uint32_t missed_limit = 3;
+  CouplingBy coupling = CouplingBy::none;
+  double coupling_window = 2.0;  ///< degrees off the angle it is led to; beyond: synchronism is lost
 };
 
 }  // namespace servogate::axis

@@ -24,5 +24,6 @@ inline constexpr AlarmNumber kProbeMissed = 4113;
 inline constexpr AlarmNumber kProbeInRapid = 4114;
 inline constexpr AlarmNumber kProbeNotFree = 4115;
 inline constexpr AlarmNumber kProbeNotLatched = 4116;
+inline constexpr AlarmNumber kThreadStarved = 4117;
 
 }  // namespace servogate::channel::alarm

@@ -204,6 +204,15 @@ inline constexpr image::AlarmRow kProgramRows[] = {
      "60B8h; or take the edge of the input instead (probe_latch).",
      "Подключите щуп к входу щупа привода каждой измеряющей оси и проверьте, есть ли у привода 60B8h; либо "
      "используйте фронт входа (probe_latch)."},
+    {alarm::kThreadStarved,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"thread.starved", "{9}: the thread was left: the rest of its chain was not planned in time",
+      "{9}: резьба прервана: продолжение цепочки не было спланировано вовремя"},
+     "Reduce the load on the computer, or give the chain fewer and longer blocks. Look at the part before you "
+     "go on.",
+     "Разгрузите компьютер или составьте цепочку из меньшего числа более длинных кадров. Осмотрите деталь, "
+     "прежде чем продолжать."},
 };
 
 }  // namespace servogate::channel

@@ -39,35 +39,75 @@ bool MasterMotion::begin(const Ahead& ahead) noexcept {
 
 bool MasterMotion::gather_segments(const Ahead& ahead) noexcept {
   count_ = 0;
-  length_ = 0.0;
-  double turns = 0.0;
-  for (int n = 0;; ++n) {
-    const Span* span = ahead.span(n);
-    if (span == nullptr || !span->final || n == kMostSpans) return false;
-    const Terms& terms = span->terms;
-    box_.acceleration = std::min(box_.acceleration, terms.box.acceleration);
-    box_.jerk = std::min(box_.jerk, terms.box.jerk);
-    Segment& segment = segments_[static_cast<std::size_t>(count_++)];
-    segment = {};
-    segment.begin = length_;
-    segment.turns = turns;
-    segment.per_turn = terms.feed.lock.per_turn;
-    segment.change = terms.feed.lock.change;
-    segment.velocity = terms.box.velocity;
-    segment.length = span->length;
-    turns += turns_to(segment, span->length);
-    length_ += span->length;
-    if (span->stop) break;
+  length_ = known_s_ = 0.0;
+  ends_ = false;
+  first_time_ = ahead.span(0)->time;
+  take_spans(ahead);
+  return ends_ || count_ == kMostSpans || known_s_ >= kKnownAhead;
+}
+
+void MasterMotion::take_spans(const Ahead& ahead) noexcept {
+  const Span* front = ahead.span(0);
+  if (front == nullptr) return;
+  int n = count_ == 0 ? 0 : static_cast<int>(taken_ + 1 - front->number);
+  // That nothing follows the last one may have become known since.
+  if (n > 0) ends_ = ahead.span(n - 1) != nullptr && ahead.span(n - 1)->stop;
+  for (; !ends_ && count_ < kMostSpans && ahead.span(n) != nullptr; ++n) add_segment(*ahead.span(n));
+  reckon_box();
+}
+
+void MasterMotion::add_segment(const Span& span) noexcept {
+  const Terms& terms = span.terms;
+  Segment& g = segments_[static_cast<std::size_t>(count_)];
+  g = {};
+  g.begin = length_;
+  g.per_turn = terms.feed.lock.per_turn;
+  g.change = terms.feed.lock.change;
+  g.velocity = terms.box.velocity;
+  g.acceleration = terms.box.acceleration;
+  g.jerk = terms.box.jerk;
+  g.length = span.length;
+  g.most = std::max(g.per_turn, end_lead(g));
+  if (count_ > 0) {
+    Segment& before = segments_[static_cast<std::size_t>(count_ - 1)];
+    g.turns = before.turns + turns_to(before, before.length);
+    g.most = std::max(g.most, end_lead(before));
+    before.most = std::max(before.most, g.per_turn);
   }
-  last_per_turn_ = 0.0;
+  length_ += span.length;
+  known_s_ = span.time - first_time_;
+  taken_ = span.number;
+  ends_ = span.stop;
+  ++count_;
+}
+
+/// Those to which no reading that is still on its way reaches back, nor a change of lead.
+void MasterMotion::drop_passed() noexcept {
+  constexpr double kReadings = 0.1;  // s
+  const double behind = state_.s - kReadings * state_.v;
+  int passed = 0;
+  while (passed + 2 < count_ && segments_[static_cast<std::size_t>(passed + 2)].begin <= behind) ++passed;
+  if (passed == 0) return;
+  std::move(segments_.begin() + passed, segments_.begin() + count_, segments_.begin());
+  count_ -= passed;
+}
+
+void MasterMotion::reckon_box() noexcept {
+  box_.acceleration = box_.jerk = std::numeric_limits<double>::infinity();
   for (int n = 0; n < count_; ++n) {
-    Segment& g = segments_[static_cast<std::size_t>(n)];
-    const double end = g.per_turn + g.change * turns_to(g, g.length);
-    g.most = std::max({g.per_turn, end, last_per_turn_});
-    if (n + 1 < count_) g.most = std::max(g.most, segments_[static_cast<std::size_t>(n + 1)].per_turn);
-    last_per_turn_ = end;
+    const Segment& g = segments_[static_cast<std::size_t>(n)];
+    box_.acceleration = std::min(box_.acceleration, g.acceleration);
+    box_.jerk = std::min(box_.jerk, g.jerk);
   }
-  return true;
+}
+
+void MasterMotion::extend(const Ahead& ahead) noexcept {
+  if (taps() || ends_ || leaving()) return;
+  if (count_ > kMostSpans / 2) drop_passed();
+  const int known = count_;
+  take_spans(ahead);
+  if (phase_ == Phase::waiting) return;
+  for (int n = known; n < count_; ++n) smooth_lead(static_cast<std::size_t>(n), begun_with_);
 }
 
 void MasterMotion::reset() noexcept {
@@ -118,18 +158,16 @@ MasterMotion::Ideal MasterMotion::ideal(const MasterState& master) const noexcep
 }
 
 /// Where leads differ one goes over into the other in the time that the limits ask for.
-void MasterMotion::smooth_leads(double w) noexcept {
+void MasterMotion::smooth_lead(std::size_t n, double w) noexcept {
   constexpr double kShare = 0.5;  // of acceleration and jerk
-  for (int n = 1; n < count_; ++n) {
-    const Segment& before = segments_[static_cast<std::size_t>(n - 1)];
-    Segment& next = segments_[static_cast<std::size_t>(n)];
-    const double turns = next.turns - before.turns;
-    next.rise = next.per_turn - (before.per_turn + before.change * turns);
-    const double rise = std::abs(next.rise);
-    const double over = std::max(std::sqrt(6.0 * rise * w * w * w / (kShare * box_.jerk)),
-                                 1.5 * rise * w * w / (kShare * box_.acceleration));
-    next.over = std::min({over, turns, turns_to(next, next.length)});
-  }
+  const Segment& before = segments_[n - 1];
+  Segment& next = segments_[n];
+  const double turns = next.turns - before.turns;
+  next.rise = next.per_turn - (before.per_turn + before.change * turns);
+  const double rise = std::abs(next.rise);
+  const double over = std::max(std::sqrt(6.0 * rise * w * w * w / (kShare * box_.jerk)),
+                               1.5 * rise * w * w / (kShare * box_.acceleration));
+  next.over = std::min({over, turns, turns_to(next, next.length)});
 }
 
 void MasterMotion::fail(MasterFault fault, double value, double limit) noexcept {
@@ -198,7 +236,7 @@ void MasterMotion::try_begin(const MasterEstimate& master, const MasterReading& 
     profile = lead_in((first.per_turn + first.change * turns_to(first, profile.end().s)) * w, box_);
   const double way = profile.end().s;
   const double braking = reading.braking > 0.0 ? first.per_turn * w * w / (2.0 * reading.braking) : 0.0;
-  const double needed = way + (taps ? braking : ramp_distance(last_per_turn_ * w, 0.0, 0.0, box_));
+  const double needed = way + (taps ? braking : ramp_distance(end_lead(segments_[static_cast<std::size_t>(count_ - 1)]) * w, 0.0, 0.0, box_));
   if (needed > length_) return fail(MasterFault::too_short, length_, needed);
   const double begins = turns_to(first, way) - w * profile.duration();
   start_ = taps ? 0.0 : lock_.start;
@@ -208,7 +246,7 @@ void MasterMotion::try_begin(const MasterEstimate& master, const MasterReading& 
   const bool passes = taps || (fraction_ >= 0.0 && fraction < fraction_ && fraction <= 1.5 * w * period_);
   fraction_ = fraction;
   if (!passes) return;
-  smooth_leads(w);
+  for (int n = 1; n < count_; ++n) smooth_lead(static_cast<std::size_t>(n), w);
   whole_ = since - fraction;
   begun_with_ = w;
   profile_ = profile;
@@ -260,8 +298,8 @@ double MasterMotion::within_limits(double jerk) const noexcept {
   const double most = velocity_allowed();
   const double dt = period_, least = taps() ? -most : 0.0;
   const auto held = [&](double j) {
-    j = std::clamp(j, -box_.jerk, box_.jerk);
-    return std::clamp(j, (-box_.acceleration - state_.a) / dt, (box_.acceleration - state_.a) / dt);
+    j = std::clamp(j, (-box_.acceleration - state_.a) / dt, (box_.acceleration - state_.a) / dt);
+    return std::clamp(j, -box_.jerk, box_.jerk);  // what is known further on may be tighter
   };
   const double j = held(jerk);
   const double a = state_.a + dt * j, v = state_.v + dt * (state_.a + 0.5 * dt * j);
@@ -274,6 +312,7 @@ double MasterMotion::within_limits(double jerk) const noexcept {
 /// What the readings say of the motion, while it goes by them.
 void MasterMotion::watch(const MasterEstimate& master, const MasterReading& reading) noexcept {
   if (!master.known()) return fail(MasterFault::lost, 0.0, 0.0);
+  if (!ends_ && reach() > length_) return fail(MasterFault::starved, 0.0, 0.0);
   const double w = direction_ * master.at(reading.acts_ns).w;
   const bool turns_round = turn_ == Turn::turning || halt_;
   const double least = taps() ? least_of_tap() : kLeastShare * begun_with_;

@@ -20,6 +20,7 @@ enum class MasterFault : std::uint8_t {
   stands,     ///< it is not told to turn, or not at its speed after s `value`, limit: s
   overshoot,  ///< a tap comes to rest `value` mm beyond its depth, limit: Threads::tap_overshoot
   no_turn,    ///< the spindle of a tap has neither stopped nor turned round after s `value`, limit: s
+  starved,    ///< the rest of a chain of threads was not planned in time
 };
 
 /// The law inside the cycle for a run by the spindle's angle, from rest to rest: it is run in so that the
@@ -27,27 +28,37 @@ enum class MasterFault : std::uint8_t {
 /// into the end. Limits of path speed, acceleration and jerk are those of the run's tightest span and hold
 /// whatever the master does. All functions but the constructor are real-time safe.
 ///
+/// A thread may be a chain of any length: it begins when its end is known, or so much of it that the planner
+/// waits for the motion, and takes up the rest as it goes. Box and leads are those of what is known.
+///
 /// A tap is legs on one line: to a depth, back, in again where chips are broken, out. At the end of each but
 /// the last it has its spindle turn round, stand before where that is asked for, and goes with it whatever it
 /// does, until the spindle stands or the depth would be exceeded by Threads::tap_overshoot.
 class MasterMotion {
  public:
-  static constexpr int kMostSpans = 64;
+  static constexpr int kMostSpans = 128;  ///< known at a time, some of them behind the motion
+  /// s at the limits of its spans: a path that is known so far begins before its end is known. The planner
+  /// comes further than that before it waits for the motion.
+  static constexpr double kKnownAhead = 1.9;
   static constexpr int kMostLegs = 64;  ///< of a tap
   explicit MasterMotion(const Config& config)
       : period_(config.period_s),
         window_(config.threads.window),
         tap_overshoot_(config.threads.tap_overshoot) {}
 
-  /// Takes up the run that begins with the first span, at rest. False: its end is not known yet.
+  /// Takes up the run that begins with the first span, at rest. False: too little of it is known yet.
   bool begin(const Ahead& ahead) noexcept;
+  /// Takes up what has become known of a thread; in each cycle before step().
+  void extend(const Ahead& ahead) noexcept;
   /// One cycle. `wait`: it does not begin. `leave`: it is given up: a thread slows down at once, a tap when
   /// the spindle stands.
   void step(const MasterEstimate& master, const MasterReading& reading, bool wait, bool leave) noexcept;
 
   /// Over the run; of a tap over its leg in motion.
   const MotionState& state() const noexcept { return state_; }
-  /// Tightest box of the run. What of it the path still needs when it slows down.
+  /// The end of the run is known.
+  bool ends() const noexcept { return ends_; }
+  /// Tightest box of what is known of the run. What of it the path still needs when it slows down.
   const Box& box() const noexcept { return box_; }
   bool at_rest() const noexcept { return state_.v == 0.0 && state_.a == 0.0; }
   /// At rest in the end of the run.
@@ -90,12 +101,18 @@ class MasterMotion {
   struct Segment {
     double begin = 0.0, turns = 0.0;  ///< of its begin, along the run
     double per_turn = 0.0, change = 0.0, velocity = 0.0;
+    double acceleration = 0.0, jerk = 0.0;
     double most = 0.0;  ///< mm of path in a revolution on it, those of its neighbours at their ends included
     double length = 0.0;
     double rise = 0.0, over = 0.0;  ///< of the lead at its begin, and revolutions that takes
   };
 
   bool gather_segments(const Ahead& ahead) noexcept;
+  void take_spans(const Ahead& ahead) noexcept;
+  void add_segment(const Span& span) noexcept;
+  void drop_passed() noexcept;
+  void reckon_box() noexcept;
+  double end_lead(const Segment& g) const noexcept { return g.per_turn + g.change * turns_to(g, g.length); }
   void reset() noexcept;
   double progress(double n) const noexcept { return direction_ * (n - start_) - whole_; }
   struct Ideal {
@@ -103,7 +120,7 @@ class MasterMotion {
     double jerk = 0.0;
   };
   Ideal ideal(const MasterState& master) const noexcept;
-  void smooth_leads(double w) noexcept;
+  void smooth_lead(std::size_t n, double w) noexcept;
   double turns_to(const Segment& segment, double s) const noexcept;
   void try_begin(const MasterEstimate& master, const MasterReading& reading) noexcept;
   void follow(const MasterEstimate& master, const MasterReading& reading) noexcept;
@@ -135,7 +152,11 @@ class MasterMotion {
   double period_, window_, tap_overshoot_;
   std::array<Segment, kMostSpans> segments_{};
   int count_ = 0;
-  double length_ = 0.0, last_per_turn_ = 0.0;
+  double length_ = 0.0;
+  bool ends_ = false;         ///< the last segment is the end of the run
+  std::uint64_t taken_ = 0;   ///< number of the span that is the last segment
+  double known_s_ = 0.0;      ///< of the run, at the limits of its spans, behind its first span
+  double first_time_ = 0.0;   ///< Span::time of the first
   Box box_;
   Lock lock_;
   MotionState state_;

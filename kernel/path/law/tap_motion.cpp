@@ -17,6 +17,7 @@ constexpr double kTurnPatience = 3.0;  // s, besides twice the ramp: a drive tha
 
 bool MasterMotion::gather_legs(const Ahead& ahead) noexcept {
   legs_count_ = 0;
+  ends_ = true;
   depth_ = 0.0;
   double at = 0.0, sense = 1.0;
   for (int n = 0;; ++n) {
@@ -42,7 +43,7 @@ void MasterMotion::begin_leg() noexcept {
   const Leg& leg = legs_[static_cast<std::size_t>(leg_)];
   Segment& segment = segments_[0];
   segment = {};
-  segment.per_turn = segment.most = last_per_turn_ = leg.per_turn;
+  segment.per_turn = segment.most = leg.per_turn;
   segment.velocity = leg.velocity;
   segment.length = length_ = leg.length;
   segment.turns = 0.0;

@@ -123,6 +123,13 @@ struct Probe {
 
 /// The next motion begins when the spindle passes its zero mark.
 struct SpindleMark {};
+/// The second spindle follows the angle of the first: `follower` turns of it for `leader` turns, `phase_deg`
+/// ahead of that; off: it stops.
+struct SpindleCoupling {
+  bool on = false;
+  std::int32_t leader = 1, follower = 1;  ///< turns; `follower` below 0: it turns the other way
+  double phase_deg = 0.0;
+};
 /// What one process asks of another, which has a number from 1 (0: the process itself).
 struct ProcessOrder {
   enum class Action : std::uint8_t {
@@ -161,7 +168,7 @@ struct Command {
   int process = 0;
   std::int32_t block = -1;  ///< N number, -1: none
   std::variant<Rapid, Line, Arc, Thread, Dwell, Spindle, Tool, MFunction, HFunction, Message, WritePlace,
-               Wait, Stop, Probe, End, SpindleMark, ProcessOrder, InPosition, FeedOverride>
+               Wait, Stop, Probe, End, SpindleMark, ProcessOrder, InPosition, FeedOverride, SpindleCoupling>
       what;
 };
 

@@ -198,13 +198,21 @@ struct Fields {
   }
   void operator()(const InPosition& c) const { w.windows(c); }
   void operator()(const FeedOverride& c) const { w.flag("effective", c.effective); }
+  void operator()(const SpindleCoupling& c) const {
+    w.flag("on", c.on);
+    if (!c.on) return;
+    w.count("leader", c.leader);
+    w.count("follower", c.follower);
+    w.field("phase", c.phase_deg);
+  }
 };
 
 /// In the order of Command::what.
-constexpr std::string_view kNames[] = {
-    "rapid",   "line",        "arc",          "thread", "dwell", "spindle", "tool", "m",
-    "h",       "message",     "write",        "wait",   "stop",  "probe",   "end",  "spindle_mark",
-    "process", "in_position", "feed_override"};
+constexpr std::string_view kNames[] = {"rapid",   "line",        "arc",           "thread",
+                                       "dwell",   "spindle",     "tool",          "m",
+                                       "h",       "message",     "write",         "wait",
+                                       "stop",    "probe",       "end",           "spindle_mark",
+                                       "process", "in_position", "feed_override", "spindle_coupling"};
 static_assert(std::size(kNames) == std::variant_size_v<decltype(Command::what)>);
 
 }  // namespace

@@ -53,6 +53,8 @@ class Survey {
     if (const auto* w = std::get_if<InPosition>(&command.what)) window(*w);
     if (const auto* o = std::get_if<FeedOverride>(&command.what)) override_effective = o->effective;
     if (std::holds_alternative<WritePlace>(command.what)) ++writes;
+    const auto* coupling = std::get_if<SpindleCoupling>(&command.what);
+    if (coupling != nullptr && coupling->on) return false;
     return !std::holds_alternative<Probe>(command.what) &&
            !std::holds_alternative<ProcessOrder>(command.what);
   }

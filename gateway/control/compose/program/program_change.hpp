@@ -28,6 +28,7 @@ struct ProgramChange {
     program,  ///< `file` is the program for the next starts, with `tables`
     tables,   ///< the same program with other tables
     block,    ///< the next start in MDI mode runs `block`
+    touch,    ///< the next start in MDI mode measures, by the channel::TouchOrder that `block` has as text
     modes,    ///< MDI has its power-on modes again
     restart,  ///< the next run of the program begins in its middle, by `restart`
   };

@@ -39,6 +39,10 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
     model.spindle_min_rpm = spindle->min_speed;
     model.spindle_max_rpm = spindle->max_speed;
   }
+  int of_process = 0;
+  for (const machine::SpindleConfig& s : machine.spindles)
+    if (s.process == process + 1 && ++of_process == 2 && s.coupling != machine::Coupling::none)
+      model.coupled_max_rpm = s.max_speed;
   model.tool_places = machine.control.tool_places;
   model.contour_tolerance_mm = machine.control.contour_tolerance;
   model.arc_feed = static_cast<program::ArcFeed>(machine.control.arc_feed);

@@ -258,6 +258,8 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
   c.at_speed_timeout = s.at_speed_timeout;
   c.orient_angle = s.orient_angle;
   c.orient_rpm = s.orient_speed;
+  c.coupling = static_cast<axis::CouplingBy>(s.coupling);
+  c.coupling_window = s.coupling_window;
   return c;
 }
 

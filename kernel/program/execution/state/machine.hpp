@@ -46,6 +46,7 @@ struct MachineModel {
   int spindles = 1;
   double spindle_min_rpm = 0.0;  ///< of the spindle that S speaks to; 0: as slow as one likes
   double spindle_max_rpm = 0.0;  ///< 0: not known, S is not compared with it
+  double coupled_max_rpm = 0.0;  ///< of the second spindle, which may follow the first; 0: none may
   int tool_places = 0;           ///< of the magazine or turret: T takes 0 to this number; 0: not known
   double contour_tolerance_mm = 0.01;
   ArcFeed arc_feed = ArcFeed::tool_centre;  ///< until a word of the program chooses

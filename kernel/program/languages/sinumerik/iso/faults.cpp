@@ -85,8 +85,15 @@ constexpr text::Entry kMessages[] = {
      "{0}: инструмент стоит на {1}{2}, а контур доходит до {1}{3}: начните цикл вне контура"},
     {"P887, 61101", "{0}: the bottom at {1}{3} does not lie behind R at {1}{2}: correct {1} and R",
      "{0}: дно на {1}{3} не лежит за плоскостью R на {1}{2}: исправьте {1} и R"},
+    {"P888",
+     "{0}: the machine has no second spindle that may follow the first one: set `coupling` of the second "
+     "[[spindle]] in the machine file",
+     "{0}: на станке нет второго шпинделя, который может следовать за первым: задайте `coupling` второго "
+     "[[spindle]] в файле станка"},
+    {"P889", "{0}: at S{1} the second spindle would turn at {2} rpm, its fastest speed is {3} rpm",
+     "{0}: при S{1} второй шпиндель вращался бы с {2} об/мин, его наибольшая частота {3} об/мин"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::hole_depth) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::polygon_speed) + 1);
 
 }  // namespace
 

@@ -60,6 +60,8 @@ enum class Wrong {
   rotation_axis,
   start_inside,
   hole_depth,
+  polygon_spindle,
+  polygon_speed,
 };
 
 std::span<const text::Entry> messages();

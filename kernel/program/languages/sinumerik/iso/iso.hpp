@@ -188,6 +188,10 @@ void to_initial(Execution& run, BlockWords& words, const Word& word);
 void to_level(Execution& run, BlockWords& words, const Word& word);
 void spindle_dwell(Execution& run, double rotations, int column);
 
+// polygon.cpp: G51.2, G50.2 (specification 17)
+void polygon(Execution& run, const BlockWords& words);
+void polygon_off(Execution& run, const BlockWords& words);
+
 // corners.cpp: ,C ,R ,A
 extern const WordRule kComma;
 void arrange_angle(Execution& run, BlockWords& words);  ///< of a block that has such a word

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// A spindle among others: the one that leads, and the one that follows its angle.
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/axis/spindle.hpp"
+
+namespace servogate::axis {
+namespace {
+
+constexpr double kRoomToCatchUp = 0.98;  // of the follower's fastest speed, for the leader
+constexpr double kRampOf = 0.8;          // of the follower's ramp, for the leader
+constexpr double kBrakesOf = 0.7;        // of its ramp, with which the position loop brakes
+/// 1/s, of the position loop: with the lag of a drive it leaves acceleration x lag / gain while speeds
+/// change.
+constexpr double kGain = 20.0;
+
+}  // namespace
+
+double Spindle::fastest() const noexcept { return std::min(gears_.max_rpm(config_.max_rpm), limit_rpm_); }
+
+double Spindle::ramp_rpm_s() const noexcept {
+  const double own = std::min(config_.acceleration, leading_.rpm_s);
+  return parting_ ? std::min(own, led_rpm_s_) : own;
+}
+
+void Spindle::couple(const CouplingOrder& order) noexcept {
+  link_.begin(order);
+  mode_ = SpindleMode::follow;
+  ordered_rpm_ = 0.0;
+  led_ = {};
+  led_rpm_s_ = config_.acceleration;
+  apart_s_ = 0.0;
+  parting_ = orienting_ = oriented_ = at_speed_ = raised_speed_ = raised_orient_ = false;
+}
+
+void Spindle::uncouple() noexcept {
+  if (link_.on()) order(SpindleMode::stop, 0.0);
+}
+
+void Spindle::lead(const Spindle& follower) noexcept {
+  const double ratio = std::abs(follower.link_.ratio());
+  leading_.by_setpoint = leading_.by_setpoint || follower.config_.coupling == CouplingBy::setpoint;
+  leading_.rpm_s = std::min(leading_.rpm_s, kRampOf * follower.config_.acceleration / ratio);
+  leading_.rpm = std::min(leading_.rpm, kRoomToCatchUp * follower.fastest() / ratio);
+}
+
+void Spindle::follow(const Spindle& leader, const image::CycleTime& now) noexcept {
+  led_ = {};
+  if (!link_.on()) return;
+  const bool by_setpoint = config_.coupling == CouplingBy::setpoint;
+  path::MasterReading reading;
+  reading.valid = leader.master_.valid;
+  reading.turns = leader.master_.turns;
+  reading.part = leader.master_.part;
+  reading.at_ns = leader.master_.at_ns;
+  reading.acts_ns = now.t_ns + now.period_ns;
+  link_.look(reading);
+  const path::MasterEstimate& measured = link_.estimate();
+  led_rpm_s_ =
+      std::min(kRampOf * config_.acceleration, std::abs(link_.ratio()) * leader.config_.acceleration);
+  led_.rpm = link_.ratio() *
+             (by_setpoint || !measured.known() ? leader.command_rpm_ : 60.0 * measured.at(reading.acts_ns).w);
+  led_.known =
+      master_.valid && leader.master_.valid && (by_setpoint ? leader.track_.begun() : measured.known());
+  if (!led_.known) return;
+  led_.turns = link_.place(by_setpoint ? leader.track_.at(master_.at_ns) : measured.at(master_.at_ns).n);
+  const double later = static_cast<double>(master_.at_ns - leader.master_.at_ns) * 1e-9;
+  const double seen = leader.total_turns() + later * leader.actual_rpm_ / 60.0;
+  led_.seen = by_setpoint ? link_.place(seen) : led_.turns;
+}
+
+/// From where it was at its newest reading to where it was led to at that time.
+double Spindle::behind_turns(bool& led) const noexcept {
+  led = enable_ && on_;
+  if (led && link_.placed() && led_.known) return led_.turns - total_turns();
+  if (led && leading_.by_setpoint && track_.begun() && master_.valid)
+    return track_.at(master_.at_ns) - total_turns();
+  led = false;
+  return 0.0;
+}
+
+/// The position loop over the speed that is commanded ahead.
+void Spindle::hold_to_angle(double dt) noexcept {
+  bool led = false;
+  const double behind = behind_turns(led), degrees = 360.0 * std::abs(behind);
+  const double braking = std::sqrt(2.0 * config_.acceleration * degrees / 6.0) * kBrakesOf;
+  const double speed = std::min({kGain * degrees / 6.0, braking, config_.orient_rpm});
+  const double step = config_.acceleration * dt;
+  correction_rpm_ += std::clamp((led ? std::copysign(speed, behind) : 0.0) - correction_rpm_, -step, step);
+  correction_rpm_ = std::clamp(correction_rpm_, std::min(0.0, -limit_rpm_ - command_rpm_),
+                               std::max(0.0, limit_rpm_ - command_rpm_));
+  if (!on_) correction_rpm_ = 0.0;
+}
+
+/// What is commanded in this cycle turns the drive from the next SYNC to the one behind it.
+void Spindle::track_command(const image::CycleTime& now) noexcept {
+  if (!leading_.by_setpoint || !on_ || !master_.valid) return track_.forget();
+  const image::Nanoseconds acts = now.t_ns + now.period_ns;
+  if (!track_.begun()) {
+    const double since = static_cast<double>(acts - master_.at_ns) * 1e-9;
+    track_.put(total_turns() + since * actual_rpm_ / 60.0, acts);
+  }
+  track_.put(track_.newest() + command_rpm_ / 60.0 * now.period_s(), acts + now.period_ns);
+}
+
+/// Before the set-point of the cycle.
+void Spindle::watch_coupling(double dt) noexcept {
+  if (!link_.on()) return;
+  const bool turns =
+      std::abs(led_.rpm) > config_.zero_speed_rpm || std::abs(actual_rpm_) > config_.zero_speed_rpm;
+  if (link_.placed() && !led_.known) {
+    if (turns) {
+      events_.add({alarm::kSpindleSyncLost, config_.coupling_window, std::abs(phase_error_deg_)});
+      return order(SpindleMode::stop, 0.0);
+    }
+    link_.lose_place();
+  }
+  const double behind = led_.known ? led_.seen - total_turns() : 0.0;
+  phase_error_deg_ = 360.0 * behind;
+  // The place is chosen at the speed: until then any would be wrong by the time that is ramped.
+  if (!link_.placed() && led_.known && turns && on_ && enable_ &&
+      std::abs(command_rpm_ - led_.rpm) <= ramp_rpm_s() * dt)
+    link_.choose(behind);
+  else if (link_.placed() && link_.watch(behind, config_.coupling_window, dt))
+    events_.add({alarm::kSpindleSyncLost, config_.coupling_window, 360.0 * std::abs(behind)});
+  const double ramp = std::abs(led_.rpm) / ramp_rpm_s();
+  apart_s_ = turns && enable_ && !link_.synchronous() ? apart_s_ + dt : 0.0;
+  if (config_.at_speed_timeout > 0.0 && apart_s_ > config_.at_speed_timeout + 2.0 * ramp && !raised_speed_) {
+    raised_speed_ = true;
+    events_.add({alarm::kSpindleNotSynchronous, config_.coupling_window, 360.0 * std::abs(behind)});
+  }
+}
+
+}  // namespace servogate::axis
