@@ -12,6 +12,7 @@ namespace servogate::channel {
 namespace {
 
 constexpr int kCommandsPerWork = 64;
+constexpr int kWorksBeside = 64;
 constexpr std::uint32_t kSpareEvents = 8;
 
 /// Something has been done when it is through: STEP stops behind it. A programmed stop waits by itself.
@@ -86,26 +87,52 @@ program::Interpreter Feeder::manual_interpreter(const program::Position& at) con
 bool Feeder::work() {
   take_orders();
   supply();
+  read_and_plan();
+  ways_.work();
+  return wants_more();
+}
+
+Reading Feeder::reading() const {
+  if (ordered() || supplied_event_ != 0 || ways_.waits()) return Reading::now;
+  if (!wants_more() && !planner_.waits()) return Reading::nothing;
+  return planner_.ample() ? Reading::beside : Reading::now;
+}
+
+void Feeder::hold() noexcept {
+  link_.track.hold();
+  link_.events.hold();
+  link_.at_once.hold();
+}
+
+void Feeder::let_go() noexcept {
+  link_.track.let_go();
+  link_.events.let_go();
+  link_.at_once.let_go();
+}
+
+void Feeder::work_beside() {
+  for (int n = 0; n < kWorksBeside && (n == 0 || wants_more()); ++n) read_and_plan();
+}
+
+void Feeder::read_and_plan() {
   // The planner wants nothing while it has something to publish: read and publish in turns.
   int done = 0;
   do {
     for (; done < kCommandsPerWork && wants_more(); ++done) read_one();
     planner_.work();
   } while (done < kCommandsPerWork && wants_more());
-  ways_.work();
   warn_of_rest();
-  return wants_more();
 }
 
 bool Feeder::wants_more() const {
   const auto room = [](const path::Ring<Event>& ring) {
-    return ring.capacity() - (ring.written() - ring.freed()) > kSpareEvents;
+    return ring.capacity() - (ring.written() - ring.given_back()) > kSpareEvents;
   };
   return state_ == State::feeding && planner_.wants_more() && room(link_.events) && room(link_.at_once);
 }
 
 void Feeder::take_orders() {
-  for (; orders_read_ < link_.orders.written(); link_.orders.free_below(++orders_read_)) {
+  for (; ordered(); link_.orders.free_below(++orders_read_)) {
     const FeederOrder& order = link_.orders[orders_read_];
     switch (order.kind) {
       case FeederOrder::Kind::start:

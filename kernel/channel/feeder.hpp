@@ -96,8 +96,16 @@ struct Link {
   std::atomic<std::uint32_t> begun{0};
 };
 
+/// When a feeder is to work next.
+enum class Reading : std::uint8_t {
+  nothing,  ///< there is nothing to do until the cycle goes on
+  beside,   ///< there is, and the motion has enough for a while: it may be done beside the next cycles
+  now,      ///< the next cycle needs it
+};
+
 /// Pulls commands from the interpreter, turns them into path elements and events. Runs outside the cycle, on
-/// one thread; in virtual time in the cycle's own thread between two cycles. Not real-time safe.
+/// one thread; in virtual time between two cycles, or beside them between hold() and let_go(). Not real-time
+/// safe.
 class Feeder {
  public:
   Feeder(path::Config config, AxisMap axes, Link& link, int process);
@@ -128,8 +136,7 @@ class Feeder {
   const Touches& touches() const noexcept { return touches_; }
   /// A run is being read or about to be: load() has to wait. False once its last motion has been read.
   bool reads() const noexcept {
-    return state_ == State::feeding || state_ == State::syncing || state_ == State::probing ||
-           orders_read_ < link_.orders.written();
+    return state_ == State::feeding || state_ == State::syncing || state_ == State::probing || ordered();
   }
   bool loaded() const noexcept { return static_cast<bool>(factory_); }
   /// The machine has so many processes, and programs of others come from there. Before the first program.
@@ -141,6 +148,16 @@ class Feeder {
   /// Takes orders, reads ahead as far as the planner wants, publishes. Bounded work a call. True: it is to be
   /// called again soon, there is more to do.
   bool work();
+
+  /// What is to be done next, by what the cycle has given back and ordered up to now.
+  Reading reading() const;
+  /// An order waits.
+  bool ordered() const noexcept { return orders_read_ < link_.orders.written(); }
+  /// Between these work_beside() sees what is given back as it is now.
+  void hold() noexcept;
+  void let_go() noexcept;
+  /// As work() until nothing more is wanted, without taking orders. Bounded.
+  void work_beside();
 
   /// What its programs have said so far; Event::code of messages, warnings and errors are numbers in it. For
   /// any thread outside the cycle.
@@ -159,6 +176,7 @@ class Feeder {
   enum class State { idle, feeding, syncing, probing, ended };
 
   bool wants_more() const;
+  void read_and_plan();
   void take_orders();
   void begin(const FeederOrder& order);
   void read_one();

@@ -69,6 +69,16 @@ void Process::forget_manual() {
   changes_.fetch_add(1, std::memory_order_release);
 }
 
+void Process::begin_beside() noexcept {
+  shown_then_ = shown();
+  feeder_.hold();
+}
+
+void Process::end_beside() noexcept {
+  feeder_.let_go();
+  shown_then_.reset();
+}
+
 void Process::set_manual_block(std::string block) {
   feeder_.set_manual_block(std::move(block));
   changes_.fetch_add(1, std::memory_order_release);
@@ -82,18 +92,27 @@ void Process::set_touch(const TouchOrder& order) {
 // -- in the cycle
 // --------------------------------------------------------------------------------------------------------
 
+/// An event lies in its queue before the path speaks of it: the path is looked at first.
+Process::Shown Process::shown() const noexcept {
+  if (shown_then_) return *shown_then_;
+  Shown s;
+  s.entries = link_.track.visible();
+  s.events = link_.events.written();
+  s.at_once = link_.at_once.written();
+  return s;
+}
+
 void Process::published(std::span<std::uint64_t> counts) const noexcept {
-  // An event lies in its queue before the path speaks of it: the path is looked at first. A run is begun
-  // before anything of it is published: what the path shows of it is known to be of it.
-  const std::uint64_t entries = link_.track.visible();
+  // A run is begun before anything of it is published: what the path shows of it is known to be of it.
+  const Shown now = shown();
   const Link::Begin* begin = link_.begin_of(generation_);
-  const auto since = [begin](std::uint64_t now, std::uint64_t from) {
-    return begin != nullptr && now > from ? now - from : 0;
+  const auto since = [begin](std::uint64_t end, std::uint64_t from) {
+    return begin != nullptr && end > from ? end - from : 0;
   };
   const Link::Begin from = begin != nullptr ? *begin : Link::Begin{};
-  counts[kTrack] = since(entries, from.track.entry);
-  counts[kEvents] = since(link_.events.written(), from.event);
-  counts[kAtOnce] = since(link_.at_once.written(), from.at_once);
+  counts[kTrack] = since(now.entries, from.track.entry);
+  counts[kEvents] = since(now.events, from.event);
+  counts[kAtOnce] = since(now.at_once, from.at_once);
   counts[kWay] = retrace_.moves ? way_published() : 0;
   counts[kPrograms] = programs_.load(std::memory_order_acquire);
   counts[kChanges] = changes();
@@ -102,8 +121,7 @@ void Process::published(std::span<std::uint64_t> counts) const noexcept {
 /// How far the track may be read in this cycle; sets the same of the event queues. What lies before the run
 /// under way is dropped.
 std::uint64_t Process::look(const cycle::ProcessContext& c) noexcept {
-  const std::uint64_t events = link_.events.written(), at_once = link_.at_once.written();
-  const std::uint64_t entries = link_.track.visible();
+  const auto [entries, events, at_once] = shown();
   const Link::Begin* begin = link_.begin_of(generation_);
   const auto drop = [](path::Ring<Event>& ring, std::uint64_t& read, std::uint64_t below) {
     if (read < below) ring.free_below(read = below);

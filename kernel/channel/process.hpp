@@ -62,6 +62,13 @@ class Process final : public cycle::ProcessInCycle {
   std::uint64_t changes() const noexcept { return changes_.load(std::memory_order_acquire); }
   /// Reads ahead and plans; see Feeder::work().
   bool work() { return feeder_.work(); }
+  /// Virtual time: reading ahead beside the cycles, on another thread or not, with the same results. Between
+  /// begin_beside() and end_beside(), called between two cycles by the cycle's thread, work_beside() may be
+  /// called on another thread: it sees what the cycle has given back as it was at the begin, and the cycle
+  /// sees what has been published at the end. Orders wait for the end.
+  void begin_beside() noexcept;
+  void work_beside() { feeder_.work_beside(); }
+  void end_beside() noexcept;
   const Feeder& feeder() const noexcept { return feeder_; }
   /// For any thread outside the cycle.
   const CuttingTimes& cutting() const noexcept { return cutting_; }
@@ -148,6 +155,11 @@ class Process final : public cycle::ProcessInCycle {
   std::span<const OwnAxis> own_axes() const noexcept { return {own_.data(), own_count_}; }
   bool acquire(cycle::ProcessContext& c) noexcept;
   void release(cycle::ProcessContext& c) noexcept;
+  /// What is published, as far as the cycle may know it.
+  struct Shown {
+    std::uint64_t entries = 0, events = 0, at_once = 0;
+  };
+  Shown shown() const noexcept;
   std::uint64_t look(const cycle::ProcessContext& c) noexcept;
   void show_motion(const path::Sample& sample, image::ProcessStatus& status) noexcept;
   void show_event(const Event& event, image::ProcessStatus& status) const noexcept;
@@ -206,7 +218,8 @@ class Process final : public cycle::ProcessInCycle {
   ProcessConfig config_;
   Link link_;
   Feeder feeder_;
-  path::Follower follower_, back_;  ///< on the program's path, and on a way along it
+  std::optional<Shown> shown_then_;  ///< beside the cycle more is being published
+  path::Follower follower_, back_;   ///< on the program's path, and on a way along it
   Handshake handshake_;
   std::uint32_t base_;                      ///< of the process' block in K
   std::atomic<std::uint64_t> programs_{0};  ///< loaded so far

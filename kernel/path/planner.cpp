@@ -326,6 +326,10 @@ void Planner::finish() {
 
 bool Planner::wants_more() const { return impl_->publisher.wants_more(); }
 
+bool Planner::waits() const { return impl_->publisher.waits(); }
+
+bool Planner::ample() const { return impl_->publisher.ample(); }
+
 void Planner::work() {
   impl_->course.work();
   impl_->fall_back();

@@ -54,13 +54,19 @@ class Planner {
   /// Nothing more for now: what was added runs to rest at its end. add() may go on later.
   void finish();
 
-  /// False while enough is planned ahead (two to four seconds, or as much as the track holds): call add()
+  /// False while enough is planned ahead (three to five seconds, or as much as the track holds): call add()
   /// when true. add() works all the same when false; it only costs memory.
   bool wants_more() const;
 
   /// Publishes what is planned and has room in the track. Call it after add() and regularly while
   /// wants_more() is false. Bounded by the capacity of the track.
   void work();
+
+  /// Something waits for room in the track.
+  bool waits() const;
+  /// What is in the track is enough for the next 0.2 s at least, at any override, without less being known
+  /// than the motion looks at: whoever adds and works on another thread has time for it.
+  bool ample() const;
 
   /// End of the elements added so far.
   const Vector& position() const;

@@ -251,19 +251,29 @@ bool Control::read_ahead() {
   return more;
 }
 
+void Control::read_with(std::unique_ptr<RoundWorker> worker) {
+  beside_ = std::make_unique<ReadingBeside>(processes_, reading_, cycle_->period_ns(), std::move(worker));
+}
+
+/// What stands behind a round does not depend on when it is looked at.
+std::unique_lock<std::mutex> Control::stop_reading() {
+  if (beside_ != nullptr) beside_->wait();
+  return std::unique_lock(reading_);
+}
+
 bool Control::change(const ProgramChange& change) {
-  const std::scoped_lock lock(reading_);
+  const auto lock = stop_reading();
   return carry_out(change);
 }
 
 std::shared_ptr<const ProgramFile> Control::take_given(int process) {
-  const std::scoped_lock lock(reading_);
+  const auto lock = stop_reading();
   Program& program = programs_[static_cast<std::size_t>(process)];
   return std::exchange(program.given, false) ? program.file : nullptr;
 }
 
 std::optional<program::Tables> Control::given_tables(int process) {
-  const std::scoped_lock lock(reading_);
+  const auto lock = stop_reading();
   return programs_[static_cast<std::size_t>(process)].tables;
 }
 

@@ -14,6 +14,7 @@
 #include "gateway/control/compose/can_transport.hpp"
 #include "gateway/control/compose/devices/open_devices.hpp"
 #include "gateway/control/compose/program/program_change.hpp"
+#include "gateway/control/compose/reading_beside.hpp"
 #include "gateway/control/compose/simulated/machine_faults.hpp"
 #include "gateway/control/compose/simulated/world_setup.hpp"
 #include "kernel/channel/process.hpp"
@@ -45,8 +46,14 @@ class Control {
   /// False: nothing more can be read before the cycle goes on.
   bool read_ahead();
 
-  /// Held while processes read ahead; whoever looks at what they read from another thread holds it too.
-  std::mutex& reading() noexcept { return reading_; }
+  /// From now on read_for_cycle() reads ahead, and `worker` does what can be done beside the cycles.
+  void read_with(std::unique_ptr<RoundWorker> worker);
+  /// Virtual time: reads ahead before a cycle, as far as ReadingBeside does.
+  void read_for_cycle() { beside_->before_cycle(cycle_->count()); }
+
+  /// As long as it is held no process reads ahead, and what they have read may be looked at. Any thread
+  /// outside the cycle.
+  std::unique_lock<std::mutex> stop_reading();
   /// Changes what a process will run, and shows it to the tap; any thread outside the cycle. False, and
   /// nothing changed: its program is being read just now.
   bool change(const ProgramChange& change);
@@ -137,8 +144,8 @@ class Control {
   std::unique_ptr<AlarmRooms> alarm_rooms_;  ///< outlives the cycle
   std::unique_ptr<mock::World> world_;
   std::unique_ptr<MachineFaults> faults_;
-  std::vector<OpenDevice> devices_;       ///< of no bus, in the order of the file
-  std::vector<CanTransport> transports_;  ///< by bus; without a bus of its own where it is a mock
+  std::vector<OpenDevice> devices_;            ///< of no bus, in the order of the file
+  std::vector<CanTransport> transports_;       ///< by bus; without a bus of its own where it is a mock
   std::vector<std::unique_ptr<BusTap>> taps_;  ///< by bus
   std::vector<std::unique_ptr<CanSupplier>> suppliers_;
   std::optional<image::Nanoseconds> due_ns_;
@@ -159,6 +166,7 @@ class Control {
   ProgramChangeTap* change_tap_ = nullptr;
   std::uint32_t logic_changes_ = 0;
   std::unique_ptr<cycle::Cycle> cycle_;
+  std::unique_ptr<ReadingBeside> beside_;  ///< nullptr: not in virtual time
 };
 
 }  // namespace servogate::gateway

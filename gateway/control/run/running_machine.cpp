@@ -95,7 +95,10 @@ RunningMachine::RunningMachine(std::unique_ptr<HeldState> state, const RunSettin
   if (!settings_.record.empty())
     record_ = begin_record(settings_.record, machine().file, learned(), *control_);
   if (!settings_.can_log.empty()) can_log_ = std::make_unique<CanLog>(settings_.can_log, *control_);
-  if (settings_.clock == ClockKind::virtual_time) control_->cycle().measure_every(kMeasuredCycles);
+  if (settings_.clock == ClockKind::virtual_time) {
+    control_->cycle().measure_every(kMeasuredCycles);
+    control_->read_with(settings_.worker ? settings_.worker() : round_worker());
+  }
   if (settings_.source == nullptr) control_->world().close_operator_points();
   if (!moves_by_itself()) return;
   const auto cycles = static_cast<int>(kPublished / control_->cycle().period_ns());
@@ -164,9 +167,12 @@ std::string RunningMachine::keep() {
   if (state_->folder.empty()) return {};
   machine::MachineState& state = state_->state;
   const program::Tables given = state.tables;
-  for (int p = 0; p < machine().control.processes; ++p)
+  for (int p = 0; p < machine().control.processes; ++p) {
+    const program::Tables before = control_->given_tables(p).value_or(given);
+    const auto lock = control_->stop_reading();
     if (const program::Tables* tables = control_->process(p).feeder().tables(); tables != nullptr)
-      program::carry_over(control_->given_tables(p).value_or(given), *tables, state.tables);
+      program::carry_over(before, *tables, state.tables);
+  }
   const image::ProcessImage& now = control_->cycle().image();
   const auto axes = control_->cycle().axes();
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -219,7 +225,7 @@ void RunningMachine::after_cycle(image::Nanoseconds late_ns) noexcept {
 bool RunningMachine::move_world() {
   wait_for_room();  // what passes on the wires is logged, too
   const image::Nanoseconds late_ns = control_->advance_world();
-  control_->read_ahead();
+  control_->read_for_cycle();
   return move_on(late_ns);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,6 +53,8 @@ struct RunSettings {
   std::string record = {}, can_log = {};  ///< file and folder; empty: none
   Announce announce = {};                 ///< what it has to say while it runs
   cycle::InputSource* source = nullptr;   ///< the inputs come from a record: no device is opened
+  /// Virtual time: who reads ahead beside the cycles; empty: round_worker().
+  std::function<std::unique_ptr<RoundWorker>()> worker = {};
 };
 
 /// A machine put together, with all that a run of it needs: what it has learned, its loop, its record and

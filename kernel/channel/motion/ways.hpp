@@ -71,6 +71,8 @@ class Ways {
   void plan(const WayOrder& order, const path::Vector& at);
   /// Publishes what has room. Bounded.
   void work() { planner_.work(); }
+  /// Something waits for room.
+  bool waits() const { return planner_.waits(); }
 
  private:
   struct Driven {

@@ -6,9 +6,10 @@
 namespace servogate::path {
 namespace {
 
-constexpr double kPlannedAhead = 2.0;  // s
+constexpr double kBeside = 0.8;  // s: so much of it may be driven before more is there
+constexpr double kPlannedAhead = 2.0 + kBeside;
 // To the last stop that is known; no change of rate takes longer.
-constexpr double kCoursePlannedAhead = 4.0;
+constexpr double kCoursePlannedAhead = 4.0 + kBeside;
 
 }  // namespace
 
@@ -18,6 +19,7 @@ void Publisher::put(const Span& span, bool revised, bool more) {
   entry.more = more;
   entry.span = span;
   if (span.final) final_time_ = std::max(final_time_, span.time);
+  entry.planned = final_time_;
 }
 
 void Publisher::begin_course() {
@@ -38,7 +40,7 @@ void Publisher::put(const Knot& knot) {
 void Publisher::extend(const CourseExtent& extent) {
   course_.kind = Entry::Kind::extend;
   course_.extent = extent;
-  final_time_ = course_begins_ + extent.seconds;
+  course_.planned = final_time_ = course_begins_ + extent.seconds;
   entries_.push_back(course_);
 }
 
@@ -61,16 +63,28 @@ void Publisher::work() {
   while (!pieces_.empty() && track_.pieces.push(pieces_.front())) pieces_.pop_front();
   while (!knots_.empty() && track_.knots.push(knots_.front())) knots_.pop_front();
   while (!stops_.empty() && track_.stops.push(stops_.front())) stops_.pop_front();
-  while (!entries_.empty() && in_track(entries_.front()) && track_.entries.push(entries_.front()))
+  while (!entries_.empty() && in_track(entries_.front()) && track_.entries.push(entries_.front())) {
+    shown_time_ = std::max(shown_time_, entries_.front().planned);
     entries_.pop_front();
+  }
+}
+
+std::optional<Publisher::Ahead> Publisher::ahead(double end) const {
+  const std::uint64_t passed = track_.pieces.given_back(), knot = track_.knots.given_back();
+  if (passed >= track_.pieces.written()) return std::nullopt;
+  if (knot >= track_.knots.written()) return Ahead{end - track_.pieces[passed].time, kPlannedAhead};
+  return Ahead{end - track_.knots[knot].planned, kCoursePlannedAhead};
 }
 
 bool Publisher::wants_more() const {
-  if (!entries_.empty()) return false;
-  const std::uint64_t passed = track_.pieces.freed(), knot = track_.knots.freed();
-  if (passed >= track_.pieces.written()) return true;
-  if (knot >= track_.knots.written()) return final_time_ - track_.pieces[passed].time < kPlannedAhead;
-  return final_time_ - track_.knots[knot].planned < kCoursePlannedAhead;
+  if (waits()) return false;
+  const std::optional<Ahead> known = ahead(final_time_);
+  return !known || known->seconds < known->wanted;
+}
+
+bool Publisher::ample() const {
+  const std::optional<Ahead> shown = ahead(shown_time_);
+  return shown && shown->seconds >= shown->wanted - 0.5 * kBeside;
 }
 
 }  // namespace servogate::path

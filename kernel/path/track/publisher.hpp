@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
+#include <optional>
 
 #include "kernel/path/track/track.hpp"
 
@@ -26,12 +27,22 @@ class Publisher final : public SpanSink, public CourseSink {
   void work();
   /// False while something waits for room, or some seconds lie ahead of the motion.
   bool wants_more() const;
+  /// Something waits for room.
+  bool waits() const { return !entries_.empty(); }
+  /// So much of what lies ahead of the motion is in the track that nothing more is needed there for a while
+  /// (kBeside).
+  bool ample() const;
   /// Sum of the times of all that is final, s.
   double planned() const { return final_time_; }
 
  private:
   Track& track_;
   bool in_track(const Entry& entry) const;
+  /// s by which `end` is behind the motion, and how much of that is planned; nullopt: nothing is there.
+  struct Ahead {
+    double seconds = 0.0, wanted = 0.0;
+  };
+  std::optional<Ahead> ahead(double end) const;
 
   std::deque<Piece> pieces_;
   std::deque<Knot> knots_;
@@ -40,6 +51,7 @@ class Publisher final : public SpanSink, public CourseSink {
   Entry course_;                ///< that was begun last
   double course_begins_ = 0.0;  ///< s
   double final_time_ = 0.0;     ///< running sum up to the last final span, s
+  double shown_time_ = 0.0;     ///< the same of what is in the track
 };
 
 }  // namespace servogate::path

@@ -27,10 +27,20 @@ class Ring {
   /// Slots that can be written and not given back. real-time safe.
   std::uint32_t capacity() const noexcept { return capacity_; }
 
+  /// Writer: what has room until let_go() is what has room now, whatever the reader gives back meanwhile: how
+  /// far a writer on a thread of its own comes does not depend on when it works. real-time safe.
+  void hold() noexcept {
+    held_ = freed();
+    holds_ = true;
+  }
+  void let_go() noexcept { holds_ = false; }
+  /// Writer: number of slots given back, as it may know it. real-time safe.
+  std::uint64_t given_back() const noexcept { return holds_ ? held_ : freed(); }
+
   /// Writer: false when the ring is full. real-time safe.
   bool push(const T& value) noexcept {
     const std::uint64_t at = written_.load(std::memory_order_relaxed);
-    if (at - freed() >= capacity_) return false;
+    if (at - given_back() >= capacity_) return false;
     slots_[at % slots_.size()] = value;
     written_.store(at + 1, std::memory_order_release);
     return true;
@@ -45,6 +55,8 @@ class Ring {
   std::vector<T> slots_;
   std::atomic<std::uint64_t> written_{0};
   std::atomic<std::uint64_t> freed_{0};
+  bool holds_ = false;  ///< the writer's, with held_
+  std::uint64_t held_ = 0;
 };
 
 }  // namespace servogate::path

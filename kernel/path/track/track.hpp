@@ -24,6 +24,7 @@ struct Entry {
   Span span;
   std::uint64_t first_knot = 0, first_stop = 0;  ///< numbers in Track::knots and Track::stops
   CourseExtent extent;
+  double planned = 0.0;  ///< s, running sum of what is known for certain then
   Vector at{};
 };
 
@@ -45,6 +46,19 @@ struct Track {
   Ring<Knot> knots;
   Ring<StopHint> stops;
   Ring<Entry> entries;
+  /// Writer: see Ring::hold().
+  void hold() noexcept {
+    pieces.hold();
+    knots.hold();
+    stops.hold();
+    entries.hold();
+  }
+  void let_go() noexcept {
+    pieces.let_go();
+    knots.let_go();
+    stops.let_go();
+    entries.let_go();
+  }
   /// Count for Follower::step(). real-time safe.
   std::uint64_t visible() const noexcept { return entries.written(); }
 };

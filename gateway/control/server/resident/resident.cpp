@@ -189,7 +189,7 @@ Resident::Load::End Resident::finish(Load& load) {
 /// False: its program has not begun, or is still being read and is not to be looked at (`also_read`) yet.
 bool Resident::read_tables_of(int process, bool also_read) {
   adopt_given(process);
-  const std::scoped_lock lock(control_.reading());
+  const auto lock = control_.stop_reading();
   const channel::Feeder& feeder = control_.process(process).feeder();
   const program::Tables* tables = feeder.tables();
   if (tables == nullptr || (feeder.reads() && !also_read)) return false;
@@ -245,7 +245,7 @@ Resident::TriedBlock Resident::try_block(int process, const std::string& block) 
   const program::Position at = position();
   std::optional<program::Interpreter> trial;
   {
-    const std::scoped_lock lock(control_.reading());
+    const auto lock = control_.stop_reading();
     trial = control_.process(process).manual_interpreter(at);
   }
   trial->mdi(block);
@@ -272,7 +272,7 @@ Resident::Coordinates Resident::coordinates(int process) {
       1 + (control_.process(process).changes() << 33 | std::uint64_t{status.run} << 1 | (runs ? 1u : 0u));
   if (now != s.read_at && !(runs && status.typed)) {
     const program::Position at = position();
-    const std::scoped_lock lock(control_.reading());
+    const auto lock = control_.stop_reading();
     const program::Interpreter manual = control_.process(process).manual_interpreter(at);
     s.manual.frame = manual.frame();
     s.manual.corrector = manual.corrector();
@@ -326,7 +326,7 @@ program::Interpreter Resident::reading(int axis, double value, double& length) {
   const int process = image_.axes[static_cast<std::size_t>(axis)].process;
   std::optional<program::Interpreter> manual;
   {
-    const std::scoped_lock lock(control_.reading());
+    const auto lock = control_.stop_reading();
     manual = control_.process(process).manual_interpreter(at);
   }
   manual->adopt(state_.tables);
