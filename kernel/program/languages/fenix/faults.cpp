@@ -41,8 +41,10 @@ constexpr text::Entry kMessages[] = {
      "{0} поворачивает ориентированный шпиндель: задайте M19 в кадре перед ним"},
     {"P781", "{0}: the speed of the turn is missing: write S in rpm",
      "{0}: нет скорости поворота: задайте S в об/мин"},
+    {"P782", "the subprogram L{0} does not end: write M17 behind it, in front of {1}",
+     "подпрограмма L{0} не кончается: задайте M17 за ней, перед {1}"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::spindle_speed) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::subprogram_open) + 1);
 
 }  // namespace
 

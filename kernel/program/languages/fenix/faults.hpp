@@ -33,6 +33,7 @@ enum class Wrong {
   argument_angle,
   spindle_free,
   spindle_speed,
+  subprogram_open,
 };
 
 std::span<const text::Entry> messages();

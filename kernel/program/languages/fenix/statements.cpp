@@ -5,6 +5,7 @@
 #include <string>
 
 #include "kernel/program/execution/execution.hpp"
+#include "kernel/program/languages/fenix/faults.hpp"
 #include "kernel/program/languages/fenix/fenix.hpp"
 
 namespace servogate::program::fenix {
@@ -177,12 +178,35 @@ LineMark mark(std::string_view line, std::size_t pos) {
   return {};
 }
 
+/// M17 stands in a line, in front of its comment.
+bool returns(std::string_view line) {
+  for (std::size_t i = 0; i < line.size() && line[i] != ';' && line.substr(i, 2) != "//"; ++i) {
+    std::size_t at = i + 1;
+    if (line[i] == 'M' && read_index(line, at) == 17) return true;
+  }
+  return false;
+}
+
+/// A subprogram in front of the main program ends there; otherwise a call would run on into the main program.
+void judge_end(const Judgement& reading, const Word& word) {
+  const Source& source = reading.source;
+  if (source.start() == Source::kNone || reading.line >= source.start()) return;
+  for (std::uint32_t line = reading.line + 1; line < source.start(); ++line) {
+    if (returns(source.line(line))) return;
+    const LineMark next = source.line(line).empty() ? LineMark{} : mark(source.line(line), 0);
+    if (next.kind == LineMark::Kind::definition)
+      fail(Wrong::subprogram_open, word.column, {std::to_string(word.text_begin), "L"});
+  }
+  fail(Wrong::subprogram_open, word.column, {std::to_string(word.text_begin), "%"});
+}
+
 void judge(const Judgement& reading, const Block& block) {
   for (std::size_t i = 0; i < block.count; ++i) {
     const Word& word = block.words[i];
     if (word.rule == &kCall && !is_definition(block) &&
         reading.source.definition(word.text_begin) == Source::kNone)
       fail(Fault::program_missing, word.column, {"L" + std::to_string(word.text_begin)});
+    if (word.rule == &kCall && is_definition(block)) judge_end(reading, word);
     if (word.rule == &kJump) {
       const Lines lines = region(reading.source, reading.line);
       target(reading.source, block.text(word), lines.first, lines.behind, word.column);

@@ -234,8 +234,13 @@ Dialect made(System system, bool values) {
   const bool turns = system != milling;
   return {
       .name = "sinumerik-808d",
-      .lexis =
-          {.skip_levels = true, .tape = '%', .named_words = true, .skip_anywhere = true, .point_in_g = true},
+      .lexis = {.skip_levels = true,
+                .label =
+                    LabelForm::colon,  // a program goes over to the Siemens mode, whose jumps look for them
+                .tape = '%',
+                .named_words = true,
+                .skip_anywhere = true,
+                .point_in_g = true},
       .terms = {.prefix = "/ N", .prefix_russian = "/ N", .repeat = {}, .repeat_end = {}, .field = {}},
       .expressions = expressions(),
       .parameters = parameters(),
@@ -248,7 +253,7 @@ Dialect made(System system, bool values) {
       .origins_exist = true,
       .longest_spike = 2.0,
       .max_block_characters = 512,
-      .max_label_characters = 0,
+      .max_label_characters = 32,
       .max_block_number_digits = 8,
       .max_m_words = 5,
       .max_repeat_depth = 0,
