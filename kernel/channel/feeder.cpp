@@ -92,10 +92,10 @@ bool Feeder::work() {
   return wants_more();
 }
 
-Reading Feeder::reading() const {
+Reading Feeder::reading(std::optional<double> driven) const {
   if (ordered() || supplied_event_ != 0 || ways_.waits()) return Reading::now;
   if (!wants_more() && !planner_.waits()) return Reading::nothing;
-  return planner_.ample() ? Reading::beside : Reading::now;
+  return planner_.ample(driven) ? Reading::beside : Reading::now;
 }
 
 void Feeder::hold() noexcept {
@@ -115,12 +115,13 @@ void Feeder::work_beside() {
 }
 
 void Feeder::read_and_plan() {
-  // The planner wants nothing while it has something to publish: read and publish in turns.
-  int done = 0;
-  do {
-    for (; done < kCommandsPerWork && wants_more(); ++done) read_one();
+  // What is read is planned at once: a few long elements are enough, and the planner wants nothing while it
+  // has something to publish.
+  planner_.work();
+  for (int n = 0; n < kCommandsPerWork && wants_more(); ++n) {
+    read_one();
     planner_.work();
-  } while (done < kCommandsPerWork && wants_more());
+  }
   warn_of_rest();
 }
 

@@ -149,8 +149,9 @@ class Feeder {
   /// called again soon, there is more to do.
   bool work();
 
-  /// What is to be done next, by what the cycle has given back and ordered up to now.
-  Reading reading() const;
+  /// What is to be done next, by what the cycle has given back and ordered up to now. `driven`:
+  /// path::Follower::driven().
+  Reading reading(std::optional<double> driven) const;
   /// An order waits.
   bool ordered() const noexcept { return orders_read_ < link_.orders.written(); }
   /// Between these work_beside() sees what is given back as it is now.

@@ -66,6 +66,7 @@ class Process final : public cycle::ProcessInCycle {
   /// begin_beside() and end_beside(), called between two cycles by the cycle's thread, work_beside() may be
   /// called on another thread: it sees what the cycle has given back as it was at the begin, and the cycle
   /// sees what has been published at the end. Orders wait for the end.
+  Reading reading() const { return feeder_.reading(follower_.driven()); }
   void begin_beside() noexcept;
   void work_beside() { feeder_.work_beside(); }
   void end_beside() noexcept;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "kernel/path/law/master_motion.hpp"
 #include "kernel/path/law/motion.hpp"
@@ -97,6 +98,9 @@ class Follower {
   /// Moves the set-point without motion (homing, drives off). False, and nothing done, while moving or with a
   /// path begun.
   bool set_position(const Vector& at) noexcept;
+  /// Where the motion is in the running sum of planned times (Knot::planned, Piece::time), s; nullopt:
+  /// nothing is in motion.
+  std::optional<double> driven() const noexcept;
   /// True while neither speed nor acceleration is present.
   bool at_rest() const noexcept {
     if (by_master_) return master_.at_rest() && !retract_.moving();

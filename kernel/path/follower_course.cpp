@@ -29,6 +29,16 @@ double Follower::course_share() const noexcept {
   return spindle_ / (from->turns > 0.0 ? from->turns + z * (to->turns - from->turns) : to->turns);
 }
 
+std::optional<double> Follower::driven() const noexcept {
+  if (!in_span_) return std::nullopt;
+  if (!on_course_)
+    return by_master_ ? front().time
+                      : front().time - (front().length - motion_.state().s) / front().terms.box.velocity;
+  const Knot* knot = course_.knot(rate_.knot());
+  if (knot == nullptr) return std::nullopt;
+  return knot->planned + rate_.time().since(knot->t);
+}
+
 /// A change of rate takes some cycles, and leads to the speed that the spindle has then; the next one follows
 /// behind it.
 double Follower::rate_wanted() noexcept {

@@ -328,7 +328,7 @@ bool Planner::wants_more() const { return impl_->publisher.wants_more(); }
 
 bool Planner::waits() const { return impl_->publisher.waits(); }
 
-bool Planner::ample() const { return impl_->publisher.ample(); }
+bool Planner::ample(std::optional<double> driven) const { return impl_->publisher.ample(driven); }
 
 void Planner::work() {
   impl_->course.work();

@@ -54,8 +54,8 @@ class Planner {
   /// Nothing more for now: what was added runs to rest at its end. add() may go on later.
   void finish();
 
-  /// False while enough is planned ahead (three to five seconds, or as much as the track holds): call add()
-  /// when true. add() works all the same when false; it only costs memory.
+  /// False while enough is planned ahead (five seconds behind the stretch in motion, or as much as the track
+  /// holds): call add() when true. add() works all the same when false; it only costs memory.
   bool wants_more() const;
 
   /// Publishes what is planned and has room in the track. Call it after add() and regularly while
@@ -64,9 +64,9 @@ class Planner {
 
   /// Something waits for room in the track.
   bool waits() const;
-  /// What is in the track is enough for the next 0.2 s at least, at any override, without less being known
-  /// than the motion looks at: whoever adds and works on another thread has time for it.
-  bool ample() const;
+  /// What is in the track is enough for a second of motion, at an override of 100 %: whoever adds and works
+  /// beside it has time. `driven`: Follower::driven().
+  bool ample(std::optional<double> driven) const;
 
   /// End of the elements added so far.
   const Vector& position() const;

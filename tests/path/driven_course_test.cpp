@@ -337,6 +337,23 @@ TEST(DrivenCourse, gives_velocity_and_acceleration_of_its_set_points) {
     }
 }
 
+TEST(DrivenCourse, is_held_in_the_middle_of_a_long_line_as_soon_as_at_any_constant_speed) {
+  for (const double length : {200.0, 400.0, 1000.0}) {
+    Machine m(course_mill());
+    load(m, {line_to(length, 0, 0, 100), line_to(length, length, 0, 100)});
+    for (int k = 0; k < 600; ++k) m.step();
+    EXPECT_NEAR(m.last.feed, 100.0, 0.5);
+    m.follower.hold();
+    int cycles = 0;
+    while (m.step().state == FollowerState::holding) ++cycles;
+    EXPECT_LT(cycles, 450) << "not at the end of the line, " << length << " mm long";
+    EXPECT_LE(m.most(), 1.001);
+    m.follower.resume();
+    ASSERT_TRUE(m.until(FollowerState::idle)) << length;
+    EXPECT_NEAR(m.last.position[1], length, 1e-9);
+  }
+}
+
 TEST(DrivenCourse, stops_sooner_and_takes_longer_with_a_greater_reserve) {
   double stop = 10.0, whole = 0.0;
   for (const double reserve : {0.01, 0.2}) {

@@ -66,7 +66,7 @@ bool ReadingBeside::ordered() const {
 
 channel::Reading ReadingBeside::needed() const {
   channel::Reading most = channel::Reading::nothing;
-  for (const auto& process : processes_) most = std::max(most, process->feeder().reading());
+  for (const auto& process : processes_) most = std::max(most, process->reading());
   return most;
 }
 

@@ -12,6 +12,7 @@ constexpr int kTry = 6;  // places that a try counts for by itself
 constexpr double kLeastShare = 0.03, kOfStop = 0.6;
 constexpr double kShortest = RateChange::kShortest;
 constexpr double kSameTime = 2e-12;  // s
+constexpr double kFarStop = 0.1;     // s; those between knots of a curve are nearer
 
 }  // namespace
 
@@ -113,7 +114,9 @@ bool RateMotion::level_off(const CourseView& view, double period) noexcept {
 
 /// First the known stop and longer ones; then, cycle by cycle, all lengths from the shortest on.
 void RateMotion::search(const CourseView& view, double target, double period) noexcept {
-  const StopHint hint = view.stop_near(knot_);
+  StopHint hint = view.stop_near(knot_);
+  // Far away, at the end of a straight, it says nothing of here.
+  if (until(view, hint) > kFarStop) hint = {};
   // A change by less takes less; where no stop is known, all lengths are tried.
   const double least =
       hint.knot < 0 ? kShortest : std::max(kShortest, kOfStop * hint.seconds * std::abs(target - rate_));

@@ -6,10 +6,11 @@
 namespace servogate::path {
 namespace {
 
-constexpr double kBeside = 0.8;  // s: so much of it may be driven before more is there
-constexpr double kPlannedAhead = 2.0 + kBeside;
-// To the last stop that is known; no change of rate takes longer.
-constexpr double kCoursePlannedAhead = 4.0 + kBeside;
+// s, to the last stop that is known; no change of rate takes longer.
+constexpr double kPlannedAhead = 4.8;
+constexpr double kAmple = 1.2;  // and the motion goes on in it while more is planned
+// The knot at the end of the interval in motion is so far behind those that are given back.
+constexpr std::uint64_t kKnotsKept = 8;
 
 }  // namespace
 
@@ -69,22 +70,22 @@ void Publisher::work() {
   }
 }
 
-std::optional<Publisher::Ahead> Publisher::ahead(double end) const {
-  const std::uint64_t passed = track_.pieces.given_back(), knot = track_.knots.given_back();
-  if (passed >= track_.pieces.written()) return std::nullopt;
-  if (knot >= track_.knots.written()) return Ahead{end - track_.pieces[passed].time, kPlannedAhead};
-  return Ahead{end - track_.knots[knot].planned, kCoursePlannedAhead};
+std::optional<double> Publisher::passed() const {
+  const std::uint64_t piece = track_.pieces.given_back(), knot = track_.knots.given_back();
+  if (piece >= track_.pieces.written()) return std::nullopt;
+  if (knot >= track_.knots.written()) return track_.pieces[piece].time;
+  return track_.knots[std::min(knot + kKnotsKept, track_.knots.written() - 1)].planned;
 }
 
 bool Publisher::wants_more() const {
   if (waits()) return false;
-  const std::optional<Ahead> known = ahead(final_time_);
-  return !known || known->seconds < known->wanted;
+  const std::optional<double> from = passed();
+  return !from || final_time_ - *from < kPlannedAhead;
 }
 
-bool Publisher::ample() const {
-  const std::optional<Ahead> shown = ahead(shown_time_);
-  return shown && shown->seconds >= shown->wanted - 0.5 * kBeside;
+bool Publisher::ample(std::optional<double> driven) const {
+  const std::optional<double> from = driven ? driven : passed();
+  return from && shown_time_ - *from >= kAmple;
 }
 
 }  // namespace servogate::path

@@ -29,20 +29,18 @@ class Publisher final : public SpanSink, public CourseSink {
   bool wants_more() const;
   /// Something waits for room.
   bool waits() const { return !entries_.empty(); }
-  /// So much of what lies ahead of the motion is in the track that nothing more is needed there for a while
-  /// (kBeside).
-  bool ample() const;
+  /// So much of what lies ahead of the motion is in the track that nothing more is needed there for a while.
+  /// `driven`: Follower::driven().
+  bool ample(std::optional<double> driven) const;
   /// Sum of the times of all that is final, s.
   double planned() const { return final_time_; }
 
  private:
   Track& track_;
   bool in_track(const Entry& entry) const;
-  /// s by which `end` is behind the motion, and how much of that is planned; nullopt: nothing is there.
-  struct Ahead {
-    double seconds = 0.0, wanted = 0.0;
-  };
-  std::optional<Ahead> ahead(double end) const;
+  /// s, as knot.planned: where the stretch in motion ends, by what has been given back. nullopt: nothing lies
+  /// ahead.
+  std::optional<double> passed() const;
 
   std::deque<Piece> pieces_;
   std::deque<Knot> knots_;
