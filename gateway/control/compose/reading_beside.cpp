@@ -20,12 +20,10 @@ WorksBeside::~WorksBeside() {
 }
 
 void WorksBeside::start(const std::function<void()>& work) {
+  if (!thread_.joinable()) thread_ = std::thread([this] { live(); });
   work_ = &work;
   state_.store(State::working, std::memory_order_release);
-  if (thread_.joinable())
-    state_.notify_all();
-  else
-    thread_ = std::thread([this] { live(); });
+  state_.notify_all();
 }
 
 void WorksBeside::wait() { state_.wait(State::working, std::memory_order_acquire); }
@@ -34,10 +32,18 @@ void WorksBeside::live() {
   for (;;) {
     state_.wait(State::idle, std::memory_order_acquire);
     if (state_.load(std::memory_order_acquire) == State::over) return;
-    (*work_)();
+    try {
+      (*work_)();
+    } catch (...) {
+      failed_ = std::current_exception();
+    }
     state_.store(State::idle, std::memory_order_release);
     state_.notify_all();
   }
+}
+
+void WorksBeside::rethrow() {
+  if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
 }
 
 std::unique_ptr<RoundWorker> round_worker() {
@@ -74,6 +80,7 @@ void ReadingBeside::end_round() {
   worker_->wait();
   for (const auto& process : processes_) process->end_beside();
   under_way_ = false;
+  worker_->rethrow();
 }
 
 void ReadingBeside::before_cycle(std::int64_t cycle) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -21,6 +22,8 @@ class RoundWorker {
   virtual void start(const std::function<void()>& work) = 0;
   /// Until the last one is done. Any thread.
   virtual void wait() = 0;
+  /// Throws here what the last one has thrown, once. The owner's thread, behind wait().
+  virtual void rethrow() {}
 };
 
 /// Does it at once.
@@ -36,6 +39,7 @@ class WorksBeside final : public RoundWorker {
   ~WorksBeside() override;
   void start(const std::function<void()>& work) override;
   void wait() override;
+  void rethrow() override;
 
  private:
   enum class State : std::uint8_t { idle, working, over };
@@ -43,6 +47,7 @@ class WorksBeside final : public RoundWorker {
 
   std::atomic<State> state_{State::idle};
   const std::function<void()>* work_ = nullptr;
+  std::exception_ptr failed_;
   std::thread thread_;
 };
 

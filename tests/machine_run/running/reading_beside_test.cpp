@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <random>
+#include <stdexcept>
 #include <thread>
 
 #include "gateway/control/run/operator_script.hpp"
@@ -95,6 +96,21 @@ void run(const Workers& worker, const std::string& trace) {
   machine->stop();
   EXPECT_TRUE(script.outcome() == gateway::OperatorScript::Outcome::finished);
   for (const auto& lost : machine->close_files()) ADD_FAILURE() << lost.path << ": " << lost.why;
+}
+
+TEST(WorksBeside, hands_what_a_round_throws_to_its_owner_and_does_the_next_one) {
+  gateway::WorksBeside worker;
+  int done = 0;
+  const std::function<void()> fails = [] { throw std::runtime_error("no such subprogram"); };
+  const std::function<void()> works = [&] { ++done; };
+  worker.start(fails);
+  worker.wait();
+  EXPECT_THROW(worker.rethrow(), std::runtime_error);
+  EXPECT_NO_THROW(worker.rethrow());
+  worker.start(works);
+  worker.wait();
+  EXPECT_NO_THROW(worker.rethrow());
+  EXPECT_EQ(done, 1);
 }
 
 TEST(ReadingBeside, gives_a_trace_of_the_same_bytes_whoever_reads_and_however_long_it_takes) {
