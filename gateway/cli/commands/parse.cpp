@@ -52,6 +52,11 @@ constexpr ClientCommand kClients[] = {
      "import "
      "FILE, export FILE (.csv, .tbl of LinuxCNC).",
      "ACTION [WORD...]", "servogate tool set 3 length=85 radius=5"},
+    {"touch",
+     "Measures with the probe along one axis, by two touches: for a tool (tool N Z0), an origin (origin N "
+     "X0), or "
+     "alone (X); says before and after.",
+     "WHAT WORD...", "servogate touch tool 3 Z0 by=-20 times=3"},
     {"mdi", "Runs one block typed by hand.", "BLOCK...", "servogate mdi \"G0 X10\" --wait", true, true},
     {"load", "Loads a part program.", "PROGRAM", "servogate load bracket.nc", false, true},
     {"start", "Starts the loaded program.", "", "servogate start --wait", true, true},
@@ -286,6 +291,7 @@ class Commands {
           ->check(number_within({1.0, 1000.0, text::both("events", "событий"), true}));
     }
     if (std::string_view(c.name) == "start") from_the_middle(app, o);
+    if (std::string_view(c.name) == "touch") app.add_flag("--yes", o.yes, "Goes there without asking");
     if (std::string_view(c.name) == "return") {
       app.add_option("--feed", o.feed, "Feed of the way back in mm/min, 1 to 5000; the jog speed without it")
           ->type_name("MM/MIN")

@@ -41,6 +41,12 @@ inline constexpr Translation kCatalogue[] = {
     {"Runs one block.", "Выполняет один кадр."},
     {"Feed hold: stops on the path.", "Останов подачи: остановка на траектории."},
     {"Goes on after a hold.", "Продолжает после останова подачи."},
+    {"Measures with the probe along one axis, by two touches: for a tool (tool N Z0), an origin (origin N "
+     "X0), or "
+     "alone (X); says before and after.",
+     "Измеряет щупом вдоль одной оси, двумя касаниями: для инструмента (tool N Z0), начала отсчёта (origin N "
+     "X0) "
+     "или само по себе (X); показывает, что было и что стало."},
     {"Ends the program and clears alarms whose cause is gone.",
      "Завершает программу и сбрасывает аварии, причина которых устранена."},
     {"Feed override in per cent, 0 to 150.", "Коррекция подачи в процентах, от 0 до 150."},

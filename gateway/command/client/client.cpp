@@ -15,6 +15,7 @@
 #include "gateway/command/client/request.hpp"
 #include "gateway/command/client/show.hpp"
 #include "gateway/command/client/tables.hpp"
+#include "gateway/command/client/touch.hpp"
 #include "gateway/command/client/wait.hpp"
 #include "gateway/command/commands.hpp"
 #include "gateway/command/signals.hpp"
@@ -208,6 +209,7 @@ int watch(SocketClient& connection, const json& request, const ClientOptions& op
 }  // namespace
 
 int client(const ClientOptions& options) {
+  if (options.command == "touch") return touch(options);
   const json request = request_of(options);
   if (request.is_null()) return kWrongUse;
   std::string path;

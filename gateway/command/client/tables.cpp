@@ -150,6 +150,20 @@ json table_request(const ClientOptions& options, json request) {
   return request;
 }
 
+std::string table_row_words(const std::string& table, int number, const json& reply) {
+  const bool origins = table == "origin";
+  for (const json& row : reply.value(origins ? "origins" : "tools", json::array()))
+    if (row.value("number", -1) == number)
+      return text::render(
+          kRow,
+          std::vector<std::string>{
+              origins ? text::both("origin", "начало") : text::both("tool", "инструмент"),
+              std::to_string(number),
+              origins ? joined(row["values"], reply["axes"], "") : tool_words(row, reply["axes"])},
+          text::user_language());
+  return {};
+}
+
 void print_table(const ClientOptions& options, const json& reply) {
   const bool origins = options.command == "origin";
   const json rows = reply.value(origins ? "origins" : "tools", json::array());

@@ -104,6 +104,16 @@ struct Mdi {
   std::string block;
   int process = 0;
 };
+/// Measures along a linear axis with the probe: to its first touch at `feed`, then so many touches at `slow`
+/// from `back` further back, and back to where it began. What was found stands in the status.
+struct Touch {
+  std::string axis;
+  double by = 0.0;  ///< from where it stands, with its sign: no further; a diameter on a diameter axis
+  double feed_mm_min = 200.0, slow_mm_min = 20.0;
+  double back = 2.0;  ///< mm along the axis
+  double times = 1.0;
+  bool plan = false;  ///< only says what would be done
+};
 struct Resume {
   int process = 0;
 };
@@ -177,8 +187,8 @@ struct PlcWatch {
 struct PlcList {};
 
 using Command = std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero,
-                             Override, Load, Start, Restart, Step, Mdi, Resume, Return, Retrace, Assign,
-                             Tables, TableSet, TableClear, TableUndo, TableImport, TableExport, Reset,
+                             Override, Load, Start, Restart, Step, Mdi, Touch, Resume, Return, Retrace,
+                             Assign, Tables, TableSet, TableClear, TableUndo, TableImport, TableExport, Reset,
                              Acknowledge, Input, SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down,
                              PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
 

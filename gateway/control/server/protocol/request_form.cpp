@@ -59,7 +59,11 @@ constexpr struct {
                {"", "name", kText},
                {"", "names", kList},
                {"", "body", kText},
+               {"touch", "times", kNumber},
                {"", "times", kSwitch},
+               {"", "by", kNumber},
+               {"", "slow", kNumber},
+               {"", "back", kNumber},
                {"", "stay", kSwitch},
                {"", "files", kList},
                {"", "online", kSwitch},
@@ -85,8 +89,9 @@ constexpr struct {
 /// Without which a request says nothing.
 constexpr struct {
   std::string_view command, key;
-} kNeeded[] = {{"jog", "axis"},  {"jog_continuous", "axis"}, {"zero", "axis"},   {"load", "program"},
-               {"mdi", "block"}, {"input", "point"},         {"assign", "axis"}, {"table_import", "file"}};
+} kNeeded[] = {{"jog", "axis"},     {"jog_continuous", "axis"}, {"zero", "axis"},
+               {"load", "program"}, {"mdi", "block"},           {"touch", "axis"},
+               {"input", "point"},  {"assign", "axis"},         {"table_import", "file"}};
 
 std::string what_stands(const json& value) {
   switch (value.type()) {
@@ -333,6 +338,18 @@ constexpr struct {
     {"mdi",
      [](Fields& f) -> Command {
        return ask::Mdi{f.text("block"), f.process(0)};
+     }},
+    {"touch",
+     [](Fields& f) -> Command {
+       ask::Touch t;
+       t.axis = f.text("axis");
+       t.by = f.needed("by");
+       t.feed_mm_min = f.number("feed", t.feed_mm_min);
+       t.slow_mm_min = f.number("slow", t.slow_mm_min);
+       t.back = f.number("back", t.back);
+       t.times = f.number("times", t.times);
+       t.plan = f.is_set("plan");
+       return t;
      }},
     {"resume", [](Fields& f) -> Command { return ask::Resume{f.process(0)}; }},
     {"return",

@@ -91,6 +91,7 @@ json json_of(const ProcessReport& p) {
           {"holds_later", p.status.holds_later},
           {"off_spindle_mm", p.status.by_spindle ? json(measure(p.status.off_spindle_mm)) : json()},
           {"tap_overshoot_mm", measure(p.status.tap_overshoot_mm)},
+          {"touched", p.touched ? json{{"axis", p.touched->axis}, {"places", p.touched->places}} : json()},
           {"tool", p.status.tool}};
 }
 

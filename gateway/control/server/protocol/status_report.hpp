@@ -30,6 +30,12 @@ struct ProcessReport {
   double rotation_deg = 0.0;  ///< of the coordinates
   std::string message;
   std::optional<WaitWords> wait;
+  /// Places that the last touch by hand has found, as people see them.
+  struct Touched {
+    std::string axis;
+    std::vector<double> places;
+  };
+  std::optional<Touched> touched;
 };
 
 /// One axis; places are as people see them.

@@ -314,6 +314,11 @@ void Resident::set_manual_block(int process, const std::string& block) {
   control_.change({ProgramChange::Kind::block, process, {}, {}, block});
 }
 
+void Resident::set_touch(int process, const std::string& axis, const channel::TouchOrder& order) {
+  seat(process).manual_block = "touch " + axis;
+  control_.change({ProgramChange::Kind::touch, process, {}, {}, channel::to_text(order)});
+}
+
 void Resident::forget_modes() {
   for (int p = 0; p < processes(); ++p)
     if (!busy(p)) control_.change({ProgramChange::Kind::modes, p, {}, {}, {}});

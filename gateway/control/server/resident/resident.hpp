@@ -133,6 +133,8 @@ class Resident {
   bool begin_in_middle(const RestartSearch& search, double feed_mm_min, bool confirm);
   /// The block that the next start in MDI mode runs.
   void set_manual_block(int process, const std::string& block);
+  /// The next start in MDI mode measures along an axis, once.
+  void set_touch(int process, const std::string& axis, const channel::TouchOrder& order);
   /// The block that was typed last.
   const std::string& manual_block(int process) const { return seat(process).manual_block; }
   /// MDI of all processes begins with the power-on modes again.

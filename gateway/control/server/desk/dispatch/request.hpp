@@ -87,6 +87,7 @@ class Dispatch {
   Outcome take(const ask::Start& wanted) { return begin(false, wanted.process); }
   Outcome take(const ask::Step& wanted) { return begin(true, wanted.process); }
   Outcome take(const ask::Mdi&);
+  Outcome take(const ask::Touch&);
   Outcome take(const ask::Restart&);
   Outcome take(const ask::Return&);
   Outcome take(const ask::Retrace&);
@@ -130,6 +131,7 @@ class Dispatch {
   /// The request that a command of such a block is, none where it does nothing; else why it may not be.
   const text::Entry* function_of(const program::Command& command, int process,
                                  std::optional<image::Request>& request);
+  std::optional<Reply> wrong_touch(const ask::Touch& wanted, const machine::AxisConfig& axis) const;
   Outcome reset(bool whole);
   /// To the answer "not powered": each condition that is missing.
   void add_missing(Reply& answer);

@@ -34,6 +34,15 @@ std::string file_in_motion(Control& control, const image::ProcessStatus& p, int 
   return p.typed && file == kTypedFile ? std::string() : file;
 }
 
+std::optional<ProcessReport::Touched> touched(Control& control, int process) {
+  const channel::Touches::Found found = control.process(process).touches();
+  if (found.run == 0) return std::nullopt;
+  const machine::AxisConfig& axis = control.machine().axes[static_cast<std::size_t>(found.axis)];
+  ProcessReport::Touched out{axis.letter, found.places};
+  for (double& place : out.places) place *= axis.diameter ? 2.0 : 1.0;
+  return out;
+}
+
 ProcessReport process_report(Resident& resident, const image::ProcessImage& image, int process,
                              text::Language language) {
   Control& control = resident.control();
@@ -49,6 +58,7 @@ ProcessReport process_report(Resident& resident, const image::ProcessImage& imag
   if (!report.file.empty()) report.text = resident.line_of(process, report.file, p.line);
   report.message = program_message(control, image, process);
   report.wait = wait_words(control, image, process, language);
+  report.touched = touched(control, process);
   return report;
 }
 
