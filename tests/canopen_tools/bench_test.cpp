@@ -333,6 +333,21 @@ TEST_F(Lockstep, kept_runs_are_opened_again_and_laid_over_one_another) {
   EXPECT_EQ(tool("bench compare " + first + " nowhere").code, 2);
 }
 
+TEST_F(Lockstep, a_scan_of_a_full_bus_without_heartbeats_takes_no_longer_than_what_it_asks) {
+  std::string nodes = "1";
+  for (int id = 2; id <= 126; ++id) nodes += "," + std::to_string(id);
+  const Ended ended = on_drive("scan $BUS_OF_DRIVE --json", "friction=0.02", nodes);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const json found = json::parse(ended.out, nullptr, false)["nodes"];
+  ASSERT_EQ(found.size(), 126u);
+  for (const json& node : found) {
+    EXPECT_EQ(node["state"], "pre_operational") << node;
+    EXPECT_EQ(node["serial_number"], node["node"]);
+  }
+  // Waiting for every node in turn took 9.4 s.
+  EXPECT_LT(lasted_s_, 5.0);
+}
+
 class Bench : public Workbench {};
 
 TEST_F(Bench, figures_of_positioning_and_circles_come_from_any_csv) {

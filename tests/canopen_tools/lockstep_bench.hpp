@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdlib>
+
 #include "tests/canopen_tools/workbench.hpp"
 
 namespace servogate::canopen_tools {
@@ -25,6 +27,10 @@ class LockstepBench : public Workbench {
     else
       line.replace(line.find("$DRIVE"), 6, url + " 5");
     Ended ended = tool(line);
+    if (bus->says(" s; the others go on without it")) {
+      const std::string said = bus->said(), left = "left at ";
+      lasted_s_ = std::strtod(said.c_str() + said.find(left) + left.size(), nullptr);
+    }
     bus.reset();  // first: the drive waits for its time
     return ended;
   }
@@ -36,7 +42,8 @@ class LockstepBench : public Workbench {
   }
   json meta() const { return json::parse(desk_.text(out_ + "/meta.json"), nullptr, false); }
 
-  std::string out_;  ///< directory of the last call of bench()
+  double lasted_s_ = 0.0;  ///< the last call, in granted time
+  std::string out_;        ///< directory of the last call of bench()
 
  private:
   int calls_ = 0;
