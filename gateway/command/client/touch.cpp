@@ -40,6 +40,11 @@ const text::Entry kNeedsYes{"touch.needs-yes", "nothing moves: say --yes where n
 const text::Entry kNotMeasured{"touch.not-measured",
                                "the measurement did not come to its end: nothing is written",
                                "измерение не завершено: ничего не записано"};
+const text::Entry kMoved{"touch.moved", "{0} was at {1} mm and is at {2} mm: it was moved meanwhile; {3}",
+                         "{0} стояла на {1} мм, а стоит на {2} мм: её тем временем переместили; {3}"};
+const text::Entry kNotBegun{"touch.not-begun", "nothing is measured", "измерение не начато"};
+const text::Entry kMeasureAgain{"touch.again", "the row of the table is wrong: measure again",
+                                "строка таблицы неверна: измерьте снова"};
 const text::Entry kFound{"touch.found", "{0} is touched at {1} mm (machine coordinates)",
                          "{0}: касание на {1} мм (в координатах станка)"};
 const text::Entry kRepeats{"touch.repeats", "{0} touches: spread {1} µm, standard deviation {2} µm",
@@ -179,6 +184,17 @@ json axis_of(const json& status, const std::string& letter) {
   return json::object();
 }
 
+constexpr double kSamePlace = 0.01;  // mm
+
+/// Says that the axis does not stand where it was; true: it does.
+bool stands_still(const std::string& letter, const json& before, const json& now, const text::Entry& so) {
+  const double was = axis_of(before, letter).value("command", 0.0),
+               is = axis_of(now, letter).value("command", 0.0);
+  if (std::abs(is - was) <= kSamePlace) return true;
+  complain(kMoved, {letter, text::number(was, 4), text::number(is, 4), text::both(so.english, so.russian)});
+  return false;
+}
+
 /// Where the axis stands now reads what the touched place is to read, and the way between them.
 json row_request(const Wanted& wanted, const Measured& m, const json& axis) {
   const double across = axis.value("diameter", false) ? 2.0 : 1.0;
@@ -244,8 +260,12 @@ int touch(const ClientOptions& options) {
   if (first.is_null()) return connection_lost(path);
   if (const json process = axis_of(first, wanted->axis).value("process", json()); process.is_number())
     wanted->request["process"] = process;
-  if (!options.yes)
+  if (!options.yes) {
     if (const std::optional<int> code = ask_person(connection, wanted->request)) return *code;
+    const json now = ask(connection, {{"cmd", "status"}, {"language", language}});
+    if (now.is_null()) return connection_lost(path);
+    if (!stands_still(wanted->axis, first, now, kNotBegun)) return kStopped;
+  }
   json status = ask(connection, wanted->request);
   if (status.is_null()) return connection_lost(path);
   if (status.value("exit", kInfrastructure) != kDone) {
@@ -264,6 +284,9 @@ int touch(const ClientOptions& options) {
     before = tables.is_object() ? table_row_words(wanted->table, wanted->number, tables) : std::string();
     written = ask(connection, row_request(*wanted, m, axis_of(status, wanted->axis)));
     if (written.is_null()) return connection_lost(path);
+    const json now = ask(connection, {{"cmd", "status"}, {"language", language}});
+    if (now.is_null()) return connection_lost(path);
+    if (!stands_still(wanted->axis, status, now, kMeasureAgain)) return kStopped;
   }
   return show(options, *wanted, m, before, written);
 }

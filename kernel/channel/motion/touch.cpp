@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/channel/motion/touch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -55,8 +56,12 @@ std::optional<program::Command> Touch::next() {
     return to(begin, order_.fast, false);
   }
   behind_ = !behind_;
-  return behind_ ? to(last_ + sign * order_.back, order_.slow, true)
-                 : to(last_ - sign * order_.back, order_.fast, false);
+  // Never outside of the way that was ordered.
+  const auto within = [&](double place) {
+    return std::clamp(place, std::min(begin, begin + order_.by), std::max(begin, begin + order_.by));
+  };
+  return behind_ ? to(within(last_ + sign * order_.back), order_.slow, true)
+                 : to(within(last_ - sign * order_.back), order_.fast, false);
 }
 
 void Touch::touched(double at) {

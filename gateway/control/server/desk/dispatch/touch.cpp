@@ -82,7 +82,7 @@ Outcome Dispatch::take(const ask::Touch& wanted) {
   }
   if (auto proof = resident_.take_tables(process)) return behind(std::move(*proof));
   resident_.set_touch(process, a.letter,
-                      {index, wanted.by / across, wanted.feed_mm_min, wanted.slow_mm_min, wanted.back,
+                      {index, wanted.by / across, wanted.feed_mm_min, wanted.slow_mm_min, wanted.back / across,
                        static_cast<std::int32_t>(wanted.times)});
   if (ask(RequestKind::start, -1, 0.0, image::Mode::mdi, process)) return good(kBegun, {a.letter});
   resident_.set_manual_block(process, {});  // a start button must not find it later
