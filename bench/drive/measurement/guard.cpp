@@ -219,8 +219,8 @@ bool Guard::meanwhile(const std::function<void()>& work) {
     pthread_setschedparam(pthread_self(), SCHED_OTHER, &usual);
     work();
   });
-  const std::future<void> done = task.get_future();
-  std::thread thread(std::move(task));
+  std::future<void> done = task.get_future();
+  std::jthread thread(std::move(task));  // is waited for, whatever is thrown here
   const auto goes_on = [&done] {
     return done.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
   };
@@ -229,6 +229,7 @@ bool Guard::meanwhile(const std::function<void()>& work) {
   while (goes_on() && exchange({false, false, last_loop_, rest()})) {
   }
   thread.join();
+  done.get();
   return trip_ == Trip::none;
 }
 
