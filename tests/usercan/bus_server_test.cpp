@@ -24,11 +24,6 @@ class Hand {
     socket_ = connect_to(address, why);
   }
   ~Hand() { close(socket_); }
-  /// As a peer does that does not know TCP_NODELAY.
-  void collect_small_writes() {
-    const int off = 0;
-    EXPECT_EQ(setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &off, sizeof off), 0);
-  }
   void say(const std::string& text) {
     EXPECT_EQ(send(socket_, text.data(), text.size(), 0), ssize_t(text.size()));
   }
@@ -272,32 +267,6 @@ TEST(SocketcandBus, time_stamps_are_of_the_monotonic_clock) {
   ASSERT_TRUE(wait_for(*b, f));
   EXPECT_GE(f.timestamp_ns, before - image::kMillisecond);
   EXPECT_LE(f.timestamp_ns, now() + image::kMillisecond);
-}
-
-/// Two writes of a peer that collects small ones (it has no TCP_NODELAY): the second leaves when the first is
-/// acknowledged, which the system delays by 40 ms or more unless it is asked not to.
-TEST(BusServer, two_frames_of_a_peer_that_waits_for_acknowledgements_come_without_the_delay_of_those) {
-  RunningServer server;
-  auto other = server.join();
-  Hand hand(server.address());
-  hand.collect_small_writes();
-  hand.hear(">");
-  hand.ask("< open can0 >");
-  hand.ask("< rawmode >");
-  image::Nanoseconds fastest = image::kSecond;
-  // A new connection is acknowledged at once anyhow. Of many pairs one is fast on the most busy computer.
-  for (int pair = 0; pair < 80; ++pair) {
-    hand.say("< send 1 0 >");
-    hand.say("< send 2 0 >");
-    CanFrame first, second;
-    ASSERT_TRUE(wait_for(*other, first));
-    ASSERT_TRUE(wait_for(*other, second));
-    if (pair >= 40) fastest = std::min(fastest, second.timestamp_ns - first.timestamp_ns);
-    // Frames in both directions, as with a master: only then an acknowledgement waits for an answer.
-    ASSERT_TRUE(other->send(make(0x7, {})));
-    hand.hear("< frame 007 ");
-  }
-  EXPECT_LT(fastest, 20 * image::kMillisecond);
 }
 
 TEST(SocketcandBus, does_not_collect_small_writes) {
