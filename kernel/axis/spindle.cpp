@@ -39,7 +39,7 @@ void Spindle::order(SpindleMode mode, double rpm) noexcept {
     cannot_ = alarm::kSpindleCoupled;
     return;
   }
-  parting_ = link_.on() || (parting_ && mode == SpindleMode::stop);
+  parting_ = link_.synchronous() || (parting_ && mode == SpindleMode::stop);
   link_.end();
   const bool analog = config_.inverter.has_value();
   const bool no_angle = mode == SpindleMode::orient && (analog || !config_.encoder);
@@ -130,10 +130,11 @@ void Spindle::read(image::ProcessImage& image) noexcept {
     actual_rpm_ = 0.0;
     // An angle that is counted from a zero that is gone is no goal any more: nothing turns again unasked.
     if (mode_ == SpindleMode::turn || link_.on()) {
-      if (link_.on())
-        events_.add({alarm::kSpindleSyncLost, config_.coupling_window, std::abs(phase_error_deg_)});
       const bool turns = mode_ == SpindleMode::turn;
-      order(SpindleMode::stop, 0.0);
+      if (turns)
+        order(SpindleMode::stop, 0.0);
+      else
+        part_from_leader();
       if (turns) cannot_ = alarm::kSpindleOrientTimeout;
     }
     marked_ = began_ = angle_known_ = false;
@@ -229,10 +230,15 @@ double Spindle::wanted_rpm() noexcept {
 }
 
 void Spindle::follow_drive(double wanted, double dt) noexcept {
-  on_ = drive_.online && drive_.state == DriveState::operation_enabled;
-  const double step = ramp_rpm_s() * dt;
+  const bool was_on = std::exchange(on_, drive_.online && drive_.state == DriveState::operation_enabled);
+  if (link_.on() && was_on && !on_) {
+    // It would chase what it has lost as soon as its drive is acknowledged.
+    const bool turns = std::max(std::abs(command_rpm_), std::abs(actual_rpm_)) > config_.zero_speed_rpm;
+    turns ? part_from_leader() : link_.lose_place();
+  }
+  const double step = ramp_rpm_s(wanted) * dt;
   command_rpm_ = on_ ? command_rpm_ + std::clamp(wanted - command_rpm_, -step, step) : actual_rpm_;
-  if (command_rpm_ == 0.0 || !on_) parting_ = false;
+  if (command_rpm_ == 0.0 || !on_ || urgent()) parting_ = false;
   hold_to_angle(dt);
 }
 
@@ -297,6 +303,7 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   supervise(dt, enable_ && in_gear && reached && ordered_speed() != 0.0);
 
   off_s_ = mode_ == SpindleMode::stop && zero_speed_ ? off_s_ + dt : 0.0;
+  note_rest();
   image::SpindleImage& out = image.spindles[static_cast<std::size_t>(index_)];
   out.command_rpm = on_ ? command_rpm_ : 0.0;
   out.running = mode_ != SpindleMode::stop || !zero_speed_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <span>
 
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/process_image.hpp"
@@ -42,7 +43,9 @@ struct SpindleAngle {
 ///
 /// One that follows another (couple()) turns by the other's speed and is held to its angle by the position
 /// loop; the leader turns no faster and speeds up no more than the follower can go with. A stop of the
-/// follower ends the coupling: it ramps as the leader would.
+/// follower ends the coupling: where it was in step it ramps as the leader would. In an emergency stop,
+/// without its enable and above S.limit each of them has its own ramp. A leader that rests, or whose drive is
+/// off at standstill, leads nowhere until it is told to turn, whoever moves it.
 class Spindle {
  public:
   /// `index` is the spindle's place in the image. Not for the cycle.
@@ -103,7 +106,10 @@ class Spindle {
   double behind_turns(bool& led) const noexcept;
   void watch_coupling(double dt) noexcept;
   double fastest() const noexcept;
-  double ramp_rpm_s() const noexcept;
+  double ramp_rpm_s(double wanted) const noexcept;
+  bool urgent() const noexcept;
+  void part_from_leader() noexcept;
+  void note_rest() noexcept;
   void follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept;
   void write_drive(image::SpindleImage& out) const noexcept;
   void read_angle(const image::DriveFeedback& in, const image::CycleTime& now) noexcept;
@@ -161,15 +167,21 @@ class Spindle {
   Coupling link_;           ///< to the leader
   Led led_;                 ///< by it, in this cycle
   double led_rpm_s_ = 0.0;  ///< ramp with which it and its leader go together
-  bool parting_ = false;    ///< it brakes behind its coupling
+  bool parting_ = false;    ///< it brakes behind its coupling, in step
+  bool rests_ = true;       ///< it leads nowhere
   /// What followers ask of it, in this cycle.
   struct Leading {
     bool by_setpoint = false;
+    bool in_step = false;
     double rpm_s = 1e12, rpm = 1e12;
   } leading_;
   AngleTrack track_;  ///< of the commanded angle, of one that leads by it
   double correction_rpm_ = 0.0, phase_error_deg_ = 0.0;
   double apart_s_ = 0.0;  ///< coupled and turning, and not in step
 };
+
+/// The command of all spindles in a cycle. Those that lead come first: what follows has to know where to. The
+/// first spindle of a process leads its others. real-time safe.
+void command_all(std::span<Spindle> spindles, image::Reaction reaction, image::ProcessImage& image) noexcept;
 
 }  // namespace servogate::axis

@@ -14,13 +14,25 @@ constexpr double kBrakesOf = 0.7;        // of its ramp, with which the position
 /// 1/s, of the position loop: with the lag of a drive it leaves acceleration x lag / gain while speeds
 /// change.
 constexpr double kGain = 20.0;
+constexpr double kRests = 0.5;    // s at standstill; the drive has its power for longer
+constexpr double kMostOff = 0.5;  // turns that are caught up; further off the nearest place is a new one
 
 }  // namespace
 
 double Spindle::fastest() const noexcept { return std::min(gears_.max_rpm(config_.max_rpm), limit_rpm_); }
 
-double Spindle::ramp_rpm_s() const noexcept {
-  const double own = std::min(config_.acceleration, leading_.rpm_s);
+/// What it is to come down for does not wait for the other spindle.
+bool Spindle::urgent() const noexcept {
+  return reaction_ >= image::Reaction::stop_and_power_off || !enable_ || std::abs(command_rpm_) > limit_rpm_;
+}
+
+/// That of a follower binds where both go together: in step, or on the way up to it.
+double Spindle::ramp_rpm_s(double wanted) const noexcept {
+  constexpr double kRounding = 1.0 + 1e-9;
+  if (urgent()) return config_.acceleration;
+  const bool slows = std::abs(wanted) < std::abs(command_rpm_) || wanted * command_rpm_ < 0.0;
+  const bool together = leading_.in_step ? std::abs(command_rpm_) <= leading_.rpm * kRounding : !slows;
+  const double own = together ? std::min(config_.acceleration, leading_.rpm_s) : config_.acceleration;
   return parting_ ? std::min(own, led_rpm_s_) : own;
 }
 
@@ -38,9 +50,26 @@ void Spindle::uncouple() noexcept {
   if (link_.on()) order(SpindleMode::stop, 0.0);
 }
 
+/// By an alarm: it has lost what it follows with, or what it follows.
+void Spindle::part_from_leader() noexcept {
+  events_.add({alarm::kSpindleSyncLost, config_.coupling_window, std::abs(phase_error_deg_)});
+  order(SpindleMode::stop, 0.0);
+}
+
+/// Without power or enable, or shortly before the power is taken, whoever turns it by hand does not turn a
+/// follower.
+void Spindle::note_rest() noexcept {
+  const bool turning = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw;
+  if (turning && on_ && enable_)
+    rests_ = false;
+  else if (drive_.online && zero_speed_ && (!on_ || !enable_ || off_s_ >= kRests))
+    rests_ = true;
+}
+
 void Spindle::lead(const Spindle& follower) noexcept {
   const double ratio = std::abs(follower.link_.ratio());
   leading_.by_setpoint = leading_.by_setpoint || follower.config_.coupling == CouplingBy::setpoint;
+  leading_.in_step = leading_.in_step || follower.synchronous() || follower.parting_;
   leading_.rpm_s = std::min(leading_.rpm_s, kRampOf * follower.config_.acceleration / ratio);
   leading_.rpm = std::min(leading_.rpm, kRoomToCatchUp * follower.fastest() / ratio);
 }
@@ -56,6 +85,7 @@ void Spindle::follow(const Spindle& leader, const image::CycleTime& now) noexcep
   reading.at_ns = leader.master_.at_ns;
   reading.acts_ns = now.t_ns + now.period_ns;
   link_.look(reading);
+  if (leader.rests_) return link_.lose_place();
   const path::MasterEstimate& measured = link_.estimate();
   led_rpm_s_ =
       std::min(kRampOf * config_.acceleration, std::abs(link_.ratio()) * leader.config_.acceleration);
@@ -110,25 +140,46 @@ void Spindle::watch_coupling(double dt) noexcept {
   const bool turns =
       std::abs(led_.rpm) > config_.zero_speed_rpm || std::abs(actual_rpm_) > config_.zero_speed_rpm;
   if (link_.placed() && !led_.known) {
-    if (turns) {
+    if (turns) return part_from_leader();
+    link_.lose_place();
+  }
+  if (link_.placed() && !enable_) {
+    if (link_.synchronous() && turns)
       events_.add({alarm::kSpindleSyncLost, config_.coupling_window, std::abs(phase_error_deg_)});
-      return order(SpindleMode::stop, 0.0);
-    }
     link_.lose_place();
   }
   const double behind = led_.known ? led_.seen - total_turns() : 0.0;
   phase_error_deg_ = 360.0 * behind;
   // The place is chosen at the speed: until then any would be wrong by the time that is ramped.
   if (!link_.placed() && led_.known && turns && on_ && enable_ &&
-      std::abs(command_rpm_ - led_.rpm) <= ramp_rpm_s() * dt)
+      std::abs(command_rpm_ - led_.rpm) <= config_.acceleration * dt)
     link_.choose(behind);
   else if (link_.placed() && link_.watch(behind, config_.coupling_window, dt))
     events_.add({alarm::kSpindleSyncLost, config_.coupling_window, 360.0 * std::abs(behind)});
-  const double ramp = std::abs(led_.rpm) / ramp_rpm_s();
+  else if (link_.placed() && !link_.synchronous() && std::abs(behind) > kMostOff)
+    link_.lose_place();
+  const double ramp = std::abs(led_.rpm) / config_.acceleration;
   apart_s_ = turns && enable_ && !link_.synchronous() ? apart_s_ + dt : 0.0;
   if (config_.at_speed_timeout > 0.0 && apart_s_ > config_.at_speed_timeout + 2.0 * ramp && !raised_speed_) {
     raised_speed_ = true;
     events_.add({alarm::kSpindleNotSynchronous, config_.coupling_window, 360.0 * std::abs(behind)});
+  }
+}
+
+void command_all(std::span<Spindle> spindles, image::Reaction reaction, image::ProcessImage& image) noexcept {
+  const auto leader_of = [&](const Spindle& follower) -> Spindle& {
+    return *std::find_if(spindles.begin(), spindles.end(),
+                         [&](const Spindle& s) { return s.config().process == follower.config().process; });
+  };
+  for (const Spindle& s : spindles)
+    if (s.has_leader()) leader_of(s).lead(s);
+  for (Spindle& s : spindles) s.react(reaction);
+  for (Spindle& s : spindles)
+    if (!s.coupled()) s.command(image);
+  for (Spindle& s : spindles) {
+    if (!s.coupled()) continue;
+    s.follow(leader_of(s), image.now);
+    s.command(image);
   }
 }
 

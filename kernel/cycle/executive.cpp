@@ -172,30 +172,11 @@ void Cycle::run_axes() noexcept {
     a.react(reaction_);
     a.command(image_);
   }
-  run_spindles();
+  axis::command_all(spindles_, reaction_, image_);
   for (const image::AlarmRecord& r : notices_.records()) raise(r);
   notices_.clear();
   collect_events();
   note_rest();
-}
-
-/// Those that lead first: what follows has to know where to.
-void Cycle::run_spindles() noexcept {
-  const auto leader_of = [this](const axis::Spindle& follower) -> axis::Spindle& {
-    return *std::find_if(spindles_.begin(), spindles_.end(), [&](const axis::Spindle& s) {
-      return s.config().process == follower.config().process;
-    });
-  };
-  for (const axis::Spindle& s : spindles_)
-    if (s.has_leader()) leader_of(s).lead(s);
-  for (axis::Spindle& s : spindles_) s.react(reaction_);
-  for (axis::Spindle& s : spindles_)
-    if (!s.coupled()) s.command(image_);
-  for (axis::Spindle& s : spindles_) {
-    if (!s.coupled()) continue;
-    s.follow(leader_of(s), image_.now);
-    s.command(image_);
-  }
 }
 
 void Cycle::collect_events() noexcept {

@@ -179,7 +179,6 @@ class Cycle {
   void stop_manual(bool with_plc) noexcept;
   void run_processes() noexcept;
   void run_axes() noexcept;
-  void run_spindles() noexcept;
   void collect_events() noexcept;
   void note_rest() noexcept;
   void write_machine_places() noexcept;

@@ -74,11 +74,7 @@ class Pair {
     image.now.t_ns += image.now.period_ns;
     for (std::size_t n = 0; n < 2; ++n) drive(n);
     for (Spindle& s : spindles) s.read(image);
-    if (spindles[1].has_leader()) spindles[0].lead(spindles[1]);
-    for (Spindle& s : spindles) s.react(reaction);
-    spindles[0].command(image);
-    if (spindles[1].coupled()) spindles[1].follow(spindles[0], image.now);
-    spindles[1].command(image);
+    command_all(spindles, reaction, image);
     for (const Spindle& s : spindles)
       for (const Event& e : s.events()) events.push_back(e);
     const double now = image.spindles[1].command_rpm;
@@ -276,14 +272,24 @@ TEST(Coupling, takes_no_other_order_to_turn_and_ends_with_a_stop) {
   EXPECT_NEAR(m.spindles[0].actual_rpm(), 600.0, 2.0) << "the first one turns on";
 }
 
-TEST(Coupling, ramps_both_spindles_down_together_in_an_emergency_stop) {
+/// Cycles until both stand, at most `patience`.
+int until_both_stand(Pair& m, int patience) {
+  int n = 0;
+  for (; n < patience; ++n) {
+    m.cycle();
+    if (m.spindles[0].zero_speed() && m.spindles[1].zero_speed()) break;
+  }
+  return n;
+}
+
+TEST(Coupling, ramps_both_spindles_down_together_where_the_program_stops_the_first) {
   Pair m(CouplingBy::setpoint, 500.0);
   m.spindles[0].order(SpindleMode::cw, 1000.0);
-  m.run(1500);
+  m.run(3000);
   m.couple(1, 1);
   ASSERT_TRUE(m.until_synchronous());
   m.run(500);
-  m.reaction = image::Reaction::stop_and_power_off;
+  m.spindles[0].order(SpindleMode::stop, 0.0);
   double apart = 0.0;
   for (int n = 0; n < 3500; ++n) {
     m.cycle();
@@ -291,6 +297,144 @@ TEST(Coupling, ramps_both_spindles_down_together_in_an_emergency_stop) {
   }
   EXPECT_LE(apart, 30.0);
   for (const Spindle& s : m.spindles) EXPECT_TRUE(s.zero_speed());
+}
+
+TEST(Coupling, lets_each_spindle_brake_by_its_own_ramp_in_an_emergency_stop) {
+  Pair m(CouplingBy::setpoint, 500.0);
+  m.spindles[0].order(SpindleMode::cw, 1000.0);
+  m.run(3000);
+  m.couple(1, 1);
+  ASSERT_TRUE(m.until_synchronous());
+  m.run(500);
+  m.reaction = image::Reaction::stop_and_power_off;
+  m.run(550);  // 1000 rpm at 2000 rpm/s, and the lag of the drive
+  EXPECT_TRUE(m.spindles[0].zero_speed());
+  m.run(1550);  // and at 500 rpm/s
+  EXPECT_TRUE(m.spindles[1].zero_speed());
+  EXPECT_FALSE(m.spindles[1].coupled());
+}
+
+TEST(Coupling, does_not_lengthen_an_emergency_stop_of_spindles_that_are_not_yet_in_step) {
+  for (const auto& [p, q] : {std::pair{100, 1}, {1, 20}}) {
+    Pair m(CouplingBy::setpoint);
+    m.spindles[0].order(SpindleMode::cw, 3000.0);
+    m.spindles[1].order(SpindleMode::cw, 3000.0);
+    m.run(3000);
+    m.couple(p, q);
+    m.run(100);
+    ASSERT_FALSE(m.spindles[1].synchronous());
+    m.reaction = image::Reaction::stop_and_power_off;
+    EXPECT_LE(until_both_stand(m, 20000), 2100) << p << ":" << q;
+  }
+}
+
+TEST(Coupling, does_not_lengthen_a_stop_of_a_first_spindle_whose_second_is_not_yet_in_step) {
+  Pair m(CouplingBy::setpoint, 500.0);
+  m.spindles[0].order(SpindleMode::cw, 3000.0);
+  m.run(3000);
+  m.couple(1, 1);
+  m.run(100);
+  m.spindles[0].order(SpindleMode::stop, 0.0);
+  m.run(1550);
+  EXPECT_TRUE(m.spindles[0].zero_speed());
+}
+
+TEST(Coupling, lets_the_first_spindle_brake_by_its_own_ramp_where_its_enable_or_its_limit_is_taken) {
+  for (const auto& [field, value] : {std::pair{"enable", 0.0}, {"limit", 100.0}}) {
+    Pair m(CouplingBy::setpoint, 500.0);
+    m.spindles[0].order(SpindleMode::cw, 1000.0);
+    m.run(3000);
+    m.couple(1, 1);
+    ASSERT_TRUE(m.until_synchronous());
+    m.set(0, field, value);
+    m.run(550);
+    EXPECT_LE(m.spindles[0].actual_rpm(), 105.0) << field;
+    EXPECT_TRUE(m.raised(alarm::kSpindleSyncLost)) << "the second one cannot go with it: " << field;
+  }
+}
+
+TEST(Coupling, does_not_turn_the_second_spindle_when_the_first_one_is_turned_by_hand) {
+  for (const CouplingBy by : {CouplingBy::setpoint, CouplingBy::measured})
+    for (const bool stopped : {true, false}) {
+      Pair m(by);
+      m.spindles[0].order(SpindleMode::cw, 600.0);
+      m.run(800);
+      m.couple(1, 2);
+      ASSERT_TRUE(m.until_synchronous());
+      if (stopped)
+        m.spindles[0].order(SpindleMode::stop, 0.0);
+      else
+        m.set(0, "enable", 0.0);
+      m.run(3000);
+      ASSERT_TRUE(m.spindles[1].coupled());
+      ASSERT_TRUE(m.spindles[1].zero_speed());
+      ASSERT_FALSE(m.image.spindles[0].drive_command.power) << "the first one is free";
+      m.events.clear();
+      const double before = m.position[1];
+      for (int n = 0; n < 2000; ++n) {
+        m.speed[0] = kCounts;  // a turn a second
+        m.cycle();
+      }
+      EXPECT_NEAR(m.position[1], before, kCounts / 360.0) << stopped;
+      EXPECT_TRUE(m.events.empty());
+      m.set(0, "enable", 1.0);
+      m.spindles[0].order(SpindleMode::cw, 600.0);
+      EXPECT_TRUE(m.until_synchronous()) << "until it is told to turn";
+    }
+}
+
+TEST(Coupling, whose_second_drive_trips_ends_and_does_not_turn_again_when_it_is_acknowledged) {
+  for (const CouplingBy by : {CouplingBy::setpoint, CouplingBy::measured}) {
+    Pair m(by);
+    m.spindles[0].order(SpindleMode::cw, 600.0);
+    m.run(800);
+    m.couple(1, 2);
+    ASSERT_TRUE(m.until_synchronous());
+    m.dead[1] = true;
+    m.run(10000);  // it coasts to a stand
+    EXPECT_TRUE(m.raised(alarm::kSpindleSyncLost));
+    EXPECT_FALSE(m.spindles[1].coupled());
+    m.dead[1] = false;
+    const double before = m.position[1];
+    m.run(2000);
+    EXPECT_NEAR(m.position[1], before, kCounts / 10.0);
+    EXPECT_TRUE(m.spindles[1].zero_speed());
+  }
+}
+
+TEST(Coupling, does_not_catch_up_the_turns_that_were_lost_without_the_enable) {
+  Pair m(CouplingBy::setpoint);
+  m.spindles[0].order(SpindleMode::cw, 600.0);
+  m.run(800);
+  m.couple(1, 2);
+  ASSERT_TRUE(m.until_synchronous());
+  m.set(1, "enable", 0.0);
+  m.run(3000);
+  EXPECT_TRUE(m.raised(alarm::kSpindleSyncLost));
+  EXPECT_TRUE(m.spindles[1].zero_speed());
+  m.set(1, "enable", 1.0);
+  double fastest = 0.0;
+  for (int n = 0; n < 3000; ++n) {
+    m.cycle();
+    fastest = std::max(fastest, m.spindles[1].actual_rpm());
+  }
+  EXPECT_TRUE(m.spindles[1].synchronous());
+  EXPECT_LE(fastest, 1200.0 + 60.0) << "half a turn at most is caught up";
+}
+
+TEST(Coupling, does_not_catch_up_the_turns_that_were_lost_under_a_load) {
+  Pair m(CouplingBy::setpoint);
+  m.spindles[0].order(SpindleMode::cw, 600.0);
+  m.run(800);
+  m.couple(1, 1);
+  ASSERT_TRUE(m.until_synchronous());
+  m.load[1] = 0.5;
+  m.run(3000);
+  m.load[1] = 0.0;
+  const double rest = m.position[1];
+  m.run(2000);
+  EXPECT_TRUE(m.spindles[1].synchronous());
+  EXPECT_LE((m.position[1] - rest) / kCounts, 20.0 + 0.7) << "20 turns, and not those of 3 s behind";
 }
 
 TEST(Coupling, of_a_first_spindle_that_stands_turns_nothing) {
