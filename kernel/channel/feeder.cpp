@@ -141,6 +141,7 @@ void Feeder::take_orders() {
         break;
       case FeederOrder::Kind::abandon:
         state_ = State::idle;
+        tap_.uncouple();  // as the cycle does where a run is broken off
         break;
       case FeederOrder::Kind::sync:
         if (order.generation != generation_ || state_ != State::syncing) break;
@@ -205,6 +206,7 @@ void Feeder::begin(const FeederOrder& order) {
   raised_.clear();
   wanted_.clear();
   tap_.clear();
+  if (!order.manual_data) tap_.uncouple();
   infeed_.restart();
   supplied_event_ = 0;
 }

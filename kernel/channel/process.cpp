@@ -217,6 +217,7 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   if (k.bit(at(kStopBit, base_))) held_ = running_;  // it goes on when somebody says so
   bool hold = held_ || aside_ || !k.bit(at(kFeedEnable, base_));
   for (const OwnAxis& own : own_axes()) hold = hold || !c.axes[own.machine].feed_enabled();
+  hold = hold || out_of_step(c) != nullptr;
   if (hold)
     follower_.hold();
   else

@@ -129,8 +129,24 @@ bool Process::couple_spindles(const Event& e, cycle::ProcessContext& c) noexcept
   }
   if (stage_ == Stage::entered) follower->couple({e.code, e.code2, e.angle});
   stage_ = Stage::waiting;
-  const bool turns = leader->mode() == axis::SpindleMode::cw || leader->mode() == axis::SpindleMode::ccw;
-  return follower->synchronous() || !turns || !follower->coupled();
+  return out_of_step(c) == nullptr;
+}
+
+/// The spindle that follows and is not in step while the first one is to turn; nullptr: there is none.
+const axis::Spindle* Process::out_of_step(const cycle::ProcessContext& c) const noexcept {
+  const axis::Spindle* leader = spindle(0, c);
+  if (leader == nullptr || leader->ordered_rpm() == 0.0) return nullptr;
+  if (leader->mode() != axis::SpindleMode::cw && leader->mode() != axis::SpindleMode::ccw) return nullptr;
+  for (const axis::Spindle& s : c.spindles)
+    if (s.config().process == config_.index && s.coupled() && !s.synchronous()) return &s;
+  return nullptr;
+}
+
+/// Both spindles come down together: the cutter neither stands in a part that turns, nor is it still coupled
+/// to the next program.
+void Process::end_couplings(cycle::ProcessContext& c) noexcept {
+  for (const axis::Spindle& s : c.spindles)
+    if (s.config().process == config_.index && s.coupled()) return stop_spindles(c);
 }
 
 /// In the cycle in which the angle passes a whole revolution, as of the time when a set-point acts.

@@ -50,6 +50,7 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
         after_stop_ = ProcessState::idle;
         forget_ = forget_ || request.kind == RequestKind::reset;
       } else {
+        end_couplings(c);
         state_ = ProcessState::idle;
         handshake_.cancel(c.image, base_);
         if (request.kind == RequestKind::reset)
@@ -90,6 +91,9 @@ void Process::run_on() noexcept {
 bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept {
   find_own_axes(c);
   if (!acquire(c)) return false;
+  if (!manual_data)
+    for (axis::Spindle& s : c.spindles)
+      if (s.config().process == config_.index) s.uncouple();  // what was typed is nothing of the program
   path::Vector position{};
   FeederOrder order;
   order.kind = FeederOrder::Kind::start;
@@ -132,6 +136,7 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   disarm_drives(c);
   handshake_.cancel(c.image, base_);
   if (state != ProcessState::ended) {
+    end_couplings(c);
     follower_.stop();
     FeederOrder order;
     order.kind = FeederOrder::Kind::abandon;

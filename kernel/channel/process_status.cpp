@@ -104,6 +104,16 @@ image::Wait Process::wait(const path::Sample& sample, const cycle::ProcessContex
   }
 }
 
+/// A spindle that follows is at speed when it is in step.
+image::Wait Process::wait_for_step(const axis::Spindle* follower) noexcept {
+  image::Wait wait = of(WaitReason::signal);
+  if (follower != nullptr)
+    wait.place = at(image::field(image::kSpindleFields, "at_speed"), image::spindle_base(follower->index()));
+  wait.compare = image::Compare::eq;
+  wait.value = 1.0;
+  return wait;
+}
+
 image::Wait Process::wait_for_go_on(const cycle::ProcessContext& c) const noexcept {
   if (c.image.packets.bit(at(kStopBit, base_))) return of(WaitReason::plc_hold, at(kStopBit, base_));
   return held_ ? of(WaitReason::operator_hold) : image::Wait{};
@@ -142,13 +152,7 @@ image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcep
       wait.value = event_.value;
       return wait;
     case EventKind::spindle_coupling:
-      wait = of(WaitReason::signal);  // the second spindle is at speed when it is in step
-      if (const axis::Spindle* follower = spindle(event_.number, c); follower != nullptr)
-        wait.place =
-            at(image::field(image::kSpindleFields, "at_speed"), image::spindle_base(follower->index()));
-      wait.compare = image::Compare::eq;
-      wait.value = 1.0;
-      return wait;
+      return wait_for_step(spindle(event_.number, c));
     case EventKind::stop:
       return of(WaitReason::program_stop);
     case EventKind::optional_stop:
@@ -169,7 +173,9 @@ image::Wait Process::wait_on_path(const cycle::ProcessContext& c) const noexcept
     if (!c.axes[own.machine].feed_enabled())
       return of(WaitReason::axis_feed_enable, at(kAxisFeedEnable, image::axis_base(own.machine)),
                 own.machine);
-  return follower_.override_ratio() <= 0.0 ? of(WaitReason::override_zero) : image::Wait{};
+  if (follower_.override_ratio() <= 0.0) return of(WaitReason::override_zero);
+  const axis::Spindle* apart = out_of_step(c);
+  return apart != nullptr ? wait_for_step(apart) : image::Wait{};
 }
 
 image::Wait Process::wait_for_position(const cycle::ProcessContext& c) const noexcept {

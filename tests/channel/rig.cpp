@@ -65,8 +65,22 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
     s.latch_counts = 0;
   }
   if (!spindle_silent) s.position_counts = static_cast<std::int64_t>(std::floor(turns * 4096.0));
+  second_spindle(image);
 
   if (clearance) probe(image);
+}
+
+/// Where there is none, nobody reads it.
+void IdealDrives::second_spindle(image::ProcessImage& image) {
+  image::DriveFeedback& s = image.spindles[1].drive;
+  s.online = true;
+  s.state = second_.power ? image::DriveState::operation_enabled : image::DriveState::switch_on_disabled;
+  s.velocity_counts_s = second_.power ? second_.velocity_counts_s : 0.0;
+  const double was =
+      std::exchange(second_turns_, second_turns_ + s.velocity_counts_s / 4096.0 * image.now.period_s());
+  if (second_.latch_arm && s.latch_sequence == 0 && std::floor(second_turns_) != std::floor(was))
+    s.latch_sequence = 1;  // at 0 counts
+  s.position_counts = static_cast<std::int64_t>(std::floor(second_turns_ * 4096.0));
 }
 
 void IdealDrives::probe(image::ProcessImage& image) {
@@ -100,6 +114,7 @@ void IdealDrives::probe(image::ProcessImage& image) {
 void IdealDrives::send(image::ProcessImage& image) noexcept {
   for (std::size_t i = 0; i < kAxes; ++i) commands_[i] = image.axes[i].drive_command;
   spindle_ = image.spindles[0].drive_command;
+  second_ = image.spindles[1].drive_command;
 }
 
 void TestLogic::word(image::ProcessImage& image, int n) {
@@ -142,6 +157,7 @@ void TestLogic::scan(image::ProcessImage& image, cycle::Notices&) noexcept {
               axis_feed_enable[static_cast<std::size_t>(a)]);
   }
   k.set_bit(image::at(field(image::kSpindleFields, "enable"), image::spindle_base(0)), spindle_enable);
+  k.set_bit(image::at(field(image::kSpindleFields, "enable"), image::spindle_base(1)), spindle_enable);
   k.set_number(image::at(field(image::kSpindleFields, "override"), image::spindle_base(0)), spindle_override);
   k.set_bit(nc("feed_enable"), feed_enable);
   k.set_bit(nc("read_in_enable"), read_in_enable);
@@ -201,12 +217,14 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     model_.power_on = {std::string(power_on)};
     model_.variables.clear();
   }
-  if (kind == RigKind::iso || kind == RigKind::fenix) {
-    dialect_ = kind == RigKind::iso ? "sinumerik-808d" : "fenix";
+  if (kind == RigKind::iso || kind == RigKind::fenix || kind == RigKind::polygon) {
+    dialect_ = kind == RigKind::fenix ? "fenix" : "sinumerik-808d";
     model_.power_on =
-        kind == RigKind::iso ? std::vector<std::string>{"G291"} : std::vector<std::string>{"G94", "G90"};
-    model_.kind = program::MachineModel::Kind::milling;
+        kind == RigKind::fenix ? std::vector<std::string>{"G94", "G90"} : std::vector<std::string>{"G291"};
+    model_.kind = kind == RigKind::polygon ? program::MachineModel::Kind::turning
+                                           : program::MachineModel::Kind::milling;
     model_.variables.clear();
+    if (kind == RigKind::polygon) model_.coupled_max_rpm = kSpindleMax;
   }
   process = std::make_unique<Process>(config);
   process->load(factory(program));
@@ -215,6 +233,10 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   parts.processes = {process.get()};
   parts.spindles.emplace_back().max_rpm = kSpindleMax;
   parts.spindles.back().encoder = kind != RigKind::blind;
+  if (kind == RigKind::polygon) {
+    parts.spindles.emplace_back().max_rpm = kSpindleMax;
+    parts.spindles.back().coupling = axis::CouplingBy::setpoint;
+  }
   cycle = std::make_unique<cycle::Cycle>(std::move(parts));
   run(0.01);
   EXPECT_EQ(ask(RequestKind::power, 1.0), cycle::Refusal::none);

@@ -49,7 +49,9 @@ class IdealDrives final : public image::CycleDevice {
   void probe(image::ProcessImage& image);
   double clear_before_ = 1.0, slipped_ = 0.0;
   int since_edge_ = 1000000;
-  image::DriveCommand spindle_;
+  void second_spindle(image::ProcessImage& image);
+  image::DriveCommand spindle_, second_;
+  double second_turns_ = 0.0;
 };
 
 /// One strobe as the PLC saw it.
@@ -91,8 +93,9 @@ class TestLogic final : public image::Logic {
 /// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
 /// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
 /// Or one whose tool leaves a thread to where it came from. Or one whose drives latch the touch. Or one whose
-/// programs speak the ISO dialect, or Fenix.
-enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed, latching, iso, fenix };
+/// programs speak the ISO dialect, or Fenix. Or a lathe in the ISO dialect whose second spindle may follow
+/// the first one.
+enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed, latching, iso, fenix, polygon };
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.

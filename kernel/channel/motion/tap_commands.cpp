@@ -63,7 +63,10 @@ TapCommands::Taken TapCommands::take(const program::Command& command, PathElemen
   const auto* thread = std::get_if<program::Thread>(&command.what);
   const bool taps = thread != nullptr && thread->tap;
   if (legs_.empty()) {
+    if (const auto* coupling = std::get_if<program::SpindleCoupling>(&command.what); coupling != nullptr)
+      coupled_ = coupling->on;
     if (!taps) return Taken::no;
+    if (coupled_) return wrong(texts::kTapCoupled);
     start_ = at;
     turned_ = false;
   }

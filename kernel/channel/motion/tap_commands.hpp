@@ -31,6 +31,8 @@ class TapCommands {
   const std::vector<Leg>& legs() const noexcept { return legs_; }
   /// Nothing is open.
   void clear();
+  /// No spindle follows the first one, whatever was said before.
+  void uncouple() noexcept { coupled_ = false; }
   /// Of Taken::wrong; its place is for the caller to fill in.
   text::Finding flaw() const;
 
@@ -40,7 +42,8 @@ class TapCommands {
   Taken wrong(const text::Entry& entry);
 
   std::vector<Leg> legs_;
-  bool turned_ = false;  ///< the spindle was reversed behind the last leg
+  bool turned_ = false;   ///< the spindle was reversed behind the last leg
+  bool coupled_ = false;  ///< the second spindle follows the first one: nothing is tapped
   path::Vector start_{};
   const text::Entry* flaw_ = nullptr;
 };

@@ -14,6 +14,10 @@ inline constexpr text::Entry kTapLegs{
     "channel.tap-legs",
     "the tap goes in and back more than {0} times: break chips less often, or leave the hole between passes",
     "метчик входит и возвращается больше {0} раз: реже ломайте стружку или выводите метчик из отверстия"};
+inline constexpr text::Entry kTapCoupled{
+    "channel.tap-coupled",
+    "a tap reverses the first spindle and the second one follows it: end the coupling before the tap (G50.2)",
+    "метчик реверсирует первый шпиндель, а второй следует за ним: перед нарезанием завершите связь (G50.2)"};
 inline constexpr text::Entry kTapTooFast{"channel.tap-too-fast",
                                          "the tap leaves its hole at {1} mm/min with its spindle at {2} rpm, "
                                          "{0} goes at most at {3} mm/min: a lower speed for the way out",

@@ -90,10 +90,16 @@ constexpr text::Entry kMessages[] = {
      "[[spindle]] in the machine file",
      "{0}: на станке нет второго шпинделя, который может следовать за первым: задайте `coupling` второго "
      "[[spindle]] в файле станка"},
-    {"P889", "{0}: at S{1} the second spindle would turn at {2} rpm, its fastest speed is {3} rpm",
-     "{0}: при S{1} второй шпиндель вращался бы с {2} об/мин, его наибольшая частота {3} об/мин"},
+    {"P889",
+     "{0}: at {1} rpm and an override of 125 % the second spindle would turn at {2} rpm, its fastest speed "
+     "is "
+     "{3} rpm",
+     "{0}: при {1} об/мин и коррекции 125 % второй шпиндель вращался бы с {2} об/мин, его наибольшая частота "
+     "{3} об/мин"},
+    {"P890", "{0}: a cutting speed (G96) needs a limit of the spindle: G50 S before it",
+     "{0}: при скорости резания (G96) нужно ограничение частоты шпинделя: перед ним G50 S"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::polygon_speed) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Wrong::polygon_limit) + 1);
 
 }  // namespace
 

@@ -62,6 +62,7 @@ enum class Wrong {
   hole_depth,
   polygon_spindle,
   polygon_speed,
+  polygon_limit,
 };
 
 std::span<const text::Entry> messages();

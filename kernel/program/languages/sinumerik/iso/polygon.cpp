@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Polygon turning: the second spindle follows the first one (specification 17).
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -10,6 +11,7 @@ namespace servogate::program::sinumerik::iso {
 namespace {
 
 constexpr int kMostTurns = 9999;
+constexpr double kLargestOverride = 1.25;  // of a spindle, by the PLC
 
 /// P or Q: a whole number of turns other than 0.
 int turns(const Execution& run, const BlockWords& words, char letter, int least) {
@@ -49,10 +51,15 @@ void polygon(Execution& run, const BlockWords& words) {
   const double most = run.machine().coupled_max_rpm;
   if (most <= 0.0) fail(Wrong::polygon_spindle, column(words), {g_word(run, words)});
   const Modes& modes = run.state().modes;
-  const double asked = modes.speed * std::abs(coupling.follower) / coupling.leader;
-  if (!modes.cutting && asked > most)
+  const double limit = run.state().motion.limit_rpm, fastest = run.machine().spindle_max_rpm;
+  if (modes.cutting && limit <= 0.0) fail(Wrong::polygon_limit, column(words), {g_word(run, words)});
+  const double ordered = modes.cutting ? limit : modes.speed;
+  const double reached =
+      fastest > 0.0 ? std::min(kLargestOverride * ordered, fastest) : kLargestOverride * ordered;
+  const double asked = reached * std::abs(coupling.follower) / coupling.leader;
+  if (asked > most)
     fail(Wrong::polygon_speed, column(words),
-         {g_word(run, words), text::number(modes.speed), text::number(asked), text::number(most)});
+         {g_word(run, words), text::number(ordered), text::number(asked), text::number(most)});
   run.motion().end_profile();
   run.emit(coupling);
 }
