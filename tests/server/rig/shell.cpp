@@ -111,7 +111,9 @@ pid_t Shell::spawn(const std::vector<std::string>& arguments, const std::string&
 }
 
 void Shell::up(const std::string& machine, const std::vector<std::string>& more) {
-  name_ = machine == "mill" ? "three-axis-mill.sock" : "lathe-with-turret.sock";
+  name_ = machine == "mill"      ? "three-axis-mill.sock"
+          : machine == "tapping" ? "mill-with-a-probe-and-rigid-tapping.sock"
+                                 : "lathe-with-turret.sock";
   up_file(example(machine + "/machine.toml"), more);
 }
 
