@@ -334,6 +334,7 @@ TEST_F(Lockstep, kept_runs_are_opened_again_and_laid_over_one_another) {
 }
 
 TEST_F(Lockstep, a_scan_of_a_full_bus_without_heartbeats_takes_no_longer_than_what_it_asks) {
+  is_timed_ = true;
   std::string nodes = "1";
   for (int id = 2; id <= 126; ++id) nodes += "," + std::to_string(id);
   const Ended ended = on_drive("scan $BUS_OF_DRIVE --json", "friction=0.02", nodes);
