@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/client/confirm.hpp"
 #include "gateway/command/client/connection.hpp"
 #include "gateway/command/client/jog.hpp"
 #include "gateway/command/client/request.hpp"
@@ -48,8 +48,6 @@ const text::Entry kNotRetraced{
 const text::Entry kNoAlarms{"client.no-alarms", "no alarm is active", "активных аварий нет"};
 const text::Entry kNotKept{"client.history-not-kept", "the history is not written to the disk: {0}",
                            "история не записывается на диск: {0}"};
-const text::Entry kNeedsYes{"client.needs-yes", "nothing moves: say --yes where nobody can be asked",
-                            "движения нет: добавьте --yes, если спросить некого"};
 const text::Entry kGoThere{"client.go-there", "go there and start? (y/n)", "подойти и начать? (y/n)"};
 const text::Entry kAsked{"client.stopped",
                          "stopped by the operator; the control carries on with what it was asked to do "
@@ -60,13 +58,6 @@ const text::Entry kAsked{"client.stopped",
 std::string of(const json& object, const char* key) { return object.value(key, std::string()); }
 
 std::string say(const text::Entry& entry) { return text::render(entry, {}, text::user_language()); }
-
-/// The code stands behind the sentence, what is to be done on the lines below it.
-void print_refusal(const json& reply) {
-  const std::string words = of(reply, "text");
-  const std::size_t end = std::min(words.find('\n'), words.size());
-  tell("servogate: " + words.substr(0, end) + " [" + of(reply, "code") + "]" + words.substr(end));
-}
 
 /// The control ends its connections when state and record are written and the axes and drives are at rest.
 void wait_until_closed(SocketClient& connection) {
@@ -174,15 +165,7 @@ std::optional<int> ask_person(SocketClient& connection, json request, bool as_js
     return code;
   }
   print_restart(plan);
-  if (::isatty(STDIN_FILENO) == 0) {
-    complain(kNeedsYes, {});
-    return kWrongUse;
-  }
-  tell(say(kGoThere));
-  std::string answer;
-  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) answer += static_cast<char>(c);
-  const bool yes = answer == "y" || answer == "yes" || answer == "д" || answer == "да";
-  return yes ? std::nullopt : std::optional<int>(kStopped);
+  return confirmed(kGoThere);
 }
 
 /// Shows the status until somebody has had enough.

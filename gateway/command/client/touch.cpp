@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/client/touch.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -17,6 +14,7 @@
 #include "firmware_if/text/units.hpp"
 #include "gateway/cli/messages.hpp"
 #include "gateway/cli/standard_output.hpp"
+#include "gateway/command/client/confirm.hpp"
 #include "gateway/command/client/connection.hpp"
 #include "gateway/command/client/show.hpp"
 #include "gateway/command/client/tables.hpp"
@@ -35,8 +33,6 @@ const text::Entry kWords{"touch.words",
                          "«{0}»: touch [tool N | origin N] ОСЬ[ЗНАЧЕНИЕ] by=ММ, при желании feed=, slow=, "
                          "back=, times= и radius="};
 const text::Entry kGoThere{"touch.go", "measure so? (y/n)", "измерить так? (y/n)"};
-const text::Entry kNeedsYes{"touch.needs-yes", "nothing moves: say --yes where nobody can be asked",
-                            "движения нет: добавьте --yes, если спросить некого"};
 const text::Entry kNotMeasured{"touch.not-measured",
                                "the measurement did not come to its end: nothing is written",
                                "измерение не завершено: ничего не записано"};
@@ -132,10 +128,6 @@ std::optional<Wanted> read(const ClientOptions& options) {
   return wanted;
 }
 
-void print_refusal(const json& reply) {
-  tell("servogate: " + reply.value("text", "") + " [" + reply.value("code", "") + "]");
-}
-
 /// Shows what would be done, and asks; nullopt: yes.
 std::optional<int> ask_person(SocketClient& connection, json request) {
   request["plan"] = true;
@@ -145,15 +137,7 @@ std::optional<int> ask_person(SocketClient& connection, json request) {
     return plan.value("exit", kInfrastructure);
   }
   print_line(plan.value("text", ""));
-  if (::isatty(STDIN_FILENO) == 0) {
-    complain(kNeedsYes, {});
-    return kWrongUse;
-  }
-  tell(say(kGoThere));
-  std::string answer;
-  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) answer += static_cast<char>(c);
-  const bool yes = answer == "y" || answer == "yes" || answer == "д" || answer == "да";
-  return yes ? std::nullopt : std::optional<int>(kStopped);
+  return confirmed(kGoThere);
 }
 
 /// Places as people see them, with what they say together.
