@@ -33,7 +33,7 @@ void classify(const Lexis& lexis, Block& block) {
   const std::size_t size = line.size();
   for (std::size_t i = block.body; i < size; ++i) {
     const char c = line[i];
-    if ((marks & bit(c)) == 0) continue;  // most characters, in one step
+    if ((marks >> (static_cast<unsigned char>(c) & 63u) & 1u) == 0) continue;  // most characters, in one step
     if (comments && (c == '(' || c == ')')) depth = std::max(0, depth + (c == '(' ? 1 : -1));
     if (depth > 0) continue;
     if (c == '"') quoted = !quoted;

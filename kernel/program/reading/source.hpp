@@ -68,7 +68,7 @@ class Source {
   std::uint32_t lone_return() const noexcept { return lone_return_; }
 
  private:
-  static constexpr std::uint32_t kStride = 8;
+  static constexpr std::uint32_t kStride = 2;
   void rewrite();
   void index_line(std::uint32_t index, std::string_view text, std::vector<std::uint32_t>& open);
   void pass(std::size_t offset) const noexcept;

@@ -9,7 +9,9 @@ namespace servogate::program {
 
 constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 constexpr bool is_capital(char c) noexcept { return c >= 'A' && c <= 'Z'; }
-constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
+constexpr bool is_space(char c) noexcept {
+  return static_cast<unsigned char>(c) <= ' ' && (c == ' ' || c == '\t' || c == '\r');
+}
 constexpr bool is_letter(char c) noexcept { return is_capital(c) || (c >= 'a' && c <= 'z'); }
 constexpr char capital(char c) noexcept {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -34,15 +36,17 @@ inline Decimal read_decimal(std::string_view text, std::size_t pos) noexcept {
                                       1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
   Decimal out;
   std::uint64_t mantissa = 0;
-  std::size_t i = pos, digits = 0, decimals = 0;
-  for (; i < text.size() && is_digit(text[i]); ++i, ++digits)
+  std::size_t i = pos, decimals = 0;
+  for (; i < text.size() && is_digit(text[i]); ++i)
     mantissa = mantissa * 10 + static_cast<std::uint64_t>(text[i] - '0');
+  std::size_t digits = i - pos;
   if (i < text.size() && text[i] == '.') {
-    const std::size_t point = i++;
-    for (; i < text.size() && is_digit(text[i]); ++i, ++digits, ++decimals)
+    const std::size_t behind_point = ++i;
+    for (; i < text.size() && is_digit(text[i]); ++i)
       mantissa = mantissa * 10 + static_cast<std::uint64_t>(text[i] - '0');
+    decimals = i - behind_point;
+    digits += decimals;
     out.fraction = true;
-    if (digits == 0) i = point;
   }
   if (digits == 0) return {};
   out.length = i - pos;

@@ -112,8 +112,9 @@ Position Motion::target_of(const BlockWords& words) {
   Position& programmed = at_.programmed;
   Position to = at_.machine;
   const Frame& frame = at_.frame;
+  const int axes = machine_.axis_count();
   bool turned = false;
-  for (int a = 0; a < machine_.axis_count(); ++a) {
+  for (int a = 0; a < axes; ++a) {
     const Word* word = words.axis[at(a)];
     if (word == nullptr) continue;
     const double value = machine_.axes[at(a)].index_positions > 0 ? index_angle(a, word->value)
@@ -136,8 +137,8 @@ Position Motion::target_of(const BlockWords& words) {
   if (turned)
     for (const int a : {at_.axis1, at_.axis2}) to[at(a)] = frame.to_machine(programmed, a);
   if (words.machine_zero)
-    for (int a = 0; a < machine_.axis_count(); ++a) programmed[at(a)] = frame.to_programmed(to, a);
-  for (int a = 0; a < machine_.axis_count(); ++a)
+    for (int a = 0; a < axes; ++a) programmed[at(a)] = frame.to_programmed(to, a);
+  for (int a = 0; a < axes; ++a)
     if (const Word* word = words.axis[at(a)]; word != nullptr || turned)
       frames_.check_axis(a, to[at(a)], word != nullptr ? word->column : column_of(block_, a));
   return to;
@@ -270,7 +271,7 @@ void Motion::thread(const Position& programmed, double lead, double start_angle_
 void Motion::line(const BlockWords& words, const Position& to) {
   double square = 0.0;
   bool linear = false, turns = false;
-  for (int a = 0; a < machine_.axis_count(); ++a) {
+  for (int a = 0, axes = machine_.axis_count(); a < axes; ++a) {
     const double delta = to[at(a)] - at_.machine[at(a)];
     square += delta * delta;
     if (delta != 0.0) (machine_.rotary(a) ? turns : linear) = true;
