@@ -101,8 +101,8 @@ class Reader {
     if (name[0] == "axes") {
       case_.machine.axes.clear();
       for (const auto& letter : words_of(value)) case_.machine.axes.push_back(axis(letter));
-    } else if (name[0] == "travel" || name[0] == "reference" || name[0] == "rapid" || name[0] == "acceleration" ||
-               name[0] == "window_max" || name[0] == "window_coarse") {
+    } else if (name[0] == "travel" || name[0] == "reference" || name[0] == "rapid" ||
+               name[0] == "acceleration" || name[0] == "window_max" || name[0] == "window_coarse") {
       limits(name, words_of(value));
     } else if (name[0] == "arc_feed") {
       const std::map<std::string, ArcFeed> names = {
@@ -220,6 +220,14 @@ MachineModel mill() {
   machine.power_on = {"G94", "G97", "G90", "G71", "G27"};
   machine.variables = {{"ERF", 0.01}, {"MCD", 2.0}};
   return machine;
+}
+
+ProgramLoader CaseFile::loader() const {
+  return [this](std::string_view called) -> std::optional<LoadedProgram> {
+    const auto at = subprograms.find(std::string(called));
+    if (at == subprograms.end()) return std::nullopt;
+    return LoadedProgram(at->second);
+  };
 }
 
 CaseFile read_case(const std::string& path) { return Reader(path).read(); }

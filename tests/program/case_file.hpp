@@ -30,6 +30,9 @@ struct CaseFile {
   std::vector<Line> rs274;        ///< [rs274]: every step of another interpreter, see rs274_test.cpp
   std::vector<Line> differs;      ///< [differs]: how and why they are not ours
   std::vector<std::string> rows;  ///< [rows]: of the language's checklist, what the case proves
+
+  /// Gives the subprograms; the case outlives it.
+  ProgramLoader loader() const;
 };
 
 /// Reads a file; throws std::runtime_error with file and line when it is no test.

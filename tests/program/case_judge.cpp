@@ -24,17 +24,9 @@ struct Outcome {
   std::string warnings;  ///< one a line
 };
 
-ProgramLoader loader_of(const CaseFile& c) {
-  return [&c](std::string_view name) -> std::optional<std::string> {
-    const auto at = c.subprograms.find(std::string(name));
-    if (at == c.subprograms.end()) return std::nullopt;
-    return at->second;
-  };
-}
-
 Outcome run(const CaseFile& c) {
   Outcome outcome;
-  Interpreter interpreter(c.dialect, c.machine, c.tables, c.name + ".nc", c.program, loader_of(c), c.start);
+  Interpreter interpreter(c.dialect, c.machine, c.tables, c.name + ".nc", c.program, c.loader(), c.start);
   const auto error = write_canon(interpreter, c.machine, [&](std::string_view line) {
     outcome.commands.push_back(json::parse(line));
     return true;
@@ -163,7 +155,7 @@ class Judge {
 
   void findings() {
     const CheckReport report = check_program(case_.dialect, case_.machine, case_.tables, case_.name + ".nc",
-                                             case_.program, loader_of(case_), case_.start);
+                                             case_.program, case_.loader(), case_.start);
     for (const text::Finding& finding : report.findings) has_place(finding);
     for (std::size_t i = 0; i < std::max(case_.findings.size(), report.findings.size()); ++i)
       same(i < case_.findings.size() ? case_.findings[i].text : "(nothing)",

@@ -58,12 +58,7 @@ TEST_P(Language, ends_its_damaged_programs_inside_of_the_travel_and_names_the_pl
   for (int i = 0; i < 3'000; ++i) {
     const CaseFile& c = cases[static_cast<std::size_t>(random() % cases.size())];
     const std::string text = damaged(c.program, cases, random);
-    const ProgramLoader loader = [&](std::string_view name) -> std::optional<LoadedProgram> {
-      const auto at = c.subprograms.find(std::string(name));
-      if (at == c.subprograms.end()) return std::nullopt;
-      return LoadedProgram(at->second);
-    };
-    Interpreter run(c.dialect, c.machine, c.tables, "p.nc", text, loader, c.start);
+    Interpreter run(c.dialect, c.machine, c.tables, "p.nc", text, c.loader(), c.start);
     Interpreter copy(run);
     for (const text::Finding& finding : run.findings()) ASSERT_GT(finding.line, 0) << text;
     std::vector<std::string> letters;

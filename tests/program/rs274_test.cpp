@@ -19,12 +19,7 @@ namespace {
 const std::string kFolder = servogate::tests::source_dir() + "/tests/program/sinumerik/rs274";
 
 std::vector<std::string> ours(const CaseFile& c) {
-  const ProgramLoader loader = [&c](std::string_view name) -> std::optional<LoadedProgram> {
-    const auto at = c.subprograms.find(std::string(name));
-    if (at == c.subprograms.end()) return std::nullopt;
-    return LoadedProgram(at->second);
-  };
-  Interpreter interpreter(c.dialect, c.machine, c.tables, c.name + ".nc", c.program, loader, c.start);
+  Interpreter interpreter(c.dialect, c.machine, c.tables, c.name + ".nc", c.program, c.loader(), c.start);
   std::vector<std::string> lines;
   const auto error = write_canon(interpreter, c.machine, [&](std::string_view line) {
     lines.emplace_back(line);
