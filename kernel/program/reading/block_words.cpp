@@ -59,7 +59,6 @@ void check_conflicts(const Dialect& dialect, const Block& block) {
         fail(Fault::g_conflict, second.column, {g_name(first.g->number), g_name(second.g->number)});
     }
   }
-  name_later_g(block);
 }
 
 /// A run of letters, digits and points: what a person takes for one word.
@@ -118,6 +117,7 @@ struct Met {
   std::uint64_t letters = 0;  ///< bit of a letter: c - 'A', up to 'z' (57)
   std::uint64_t twice = 0;
   int m_words = 0;
+  bool later_g = false;
   const Word* operand = nullptr;
 };
 
@@ -125,6 +125,7 @@ void check_word(const Dialect& dialect, Block& block, Word& word, Met& met) {
   if (word.meaning == Meaning::g) {
     ++block.g_count;
     place_g(dialect, word);
+    met.later_g = met.later_g || (word.g != nullptr && word.g->function == Function::later);
     if (met.operand != nullptr && dialect.lexis.g_first)
       fail(Fault::g_after_operand, word.column,
            {word.value.parameter >= 0 ? dialect.parameters.name_of(word.value.parameter)
@@ -338,7 +339,8 @@ void read_words(const Dialect& dialect, const AxisLetters& axes, Block& block) {
     ++block.count;
     check_word(dialect, block, word, met);
   }
-  if (block.g_count > 0) check_conflicts(dialect, block);
+  if (block.g_count > 1) check_conflicts(dialect, block);
+  if (met.later_g) name_later_g(block);
 }
 
 void BlockText::expect(char c) {
