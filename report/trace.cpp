@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "report/row_ring.hpp"
 
 namespace servogate::report {
 
@@ -48,44 +49,28 @@ void sample(const image::ProcessImage& image, const TraceLayout& layout, TraceRo
 struct TraceRecorder::Impl {
   TraceLayout layout;
   std::vector<std::unique_ptr<TraceSink>> sinks;
-  /// A ring of one producer and one consumer: row n lies in slot n % size from `accepted` > n until
-  /// `consumed` > n. All slots exist from the start, so no page of them is touched for the first time inside
-  /// a cycle.
+  RowRing ring;
   std::vector<TraceRow> slots;
-  alignas(64) std::atomic<std::uint64_t> accepted{0};  ///< written by the producer alone
-  alignas(64) std::atomic<std::uint64_t> consumed{0};  ///< written by the writer thread alone
-  std::atomic<std::uint64_t> dropped{0};
   std::atomic<bool> closing{false};
   std::thread writer;
 
   Impl(TraceLayout l, std::vector<std::unique_ptr<TraceSink>> s, std::size_t rows)
-      : layout(std::move(l)), sinks(std::move(s)), slots(std::max<std::size_t>(rows, 1)) {}
-
-  /// Takes what is there, at most `most` rows; wakes a producer that waits for room.
-  std::size_t drain(std::size_t most) {
-    const std::uint64_t from = consumed.load(std::memory_order_relaxed);
-    const std::uint64_t ready = accepted.load(std::memory_order_acquire);
-    const std::uint64_t to = std::min<std::uint64_t>(ready, from + most);
-    for (std::uint64_t n = from; n < to; ++n)
-      for (const auto& sink : sinks) sink->row(slots[n % slots.size()]);
-    if (to > from) {
-      consumed.store(to, std::memory_order_release);
-      consumed.notify_one();
-    }
-    return static_cast<std::size_t>(to - from);
-  }
+      : layout(std::move(l)), sinks(std::move(s)), ring(rows), slots(ring.slots()) {}
 
   void run() {
     for (const auto& sink : sinks) sink->begin(layout);
     const std::size_t batch = std::max<std::size_t>(slots.size() / 8, 1);
+    const auto take = [this](std::size_t slot) {
+      for (const auto& sink : sinks) sink->row(slots[slot]);
+    };
     for (;;) {
       const bool last = closing.load(std::memory_order_acquire);
-      if (drain(batch) > 0) continue;
+      if (ring.drain(batch, take) > 0) continue;
       if (last) break;
       // The producer must not have to wake anybody: that would be a system call in the cycle.
       std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
-    for (const auto& sink : sinks) sink->end(dropped.load());
+    for (const auto& sink : sinks) sink->end(ring.lost());
   }
 };
 
@@ -100,36 +85,22 @@ TraceRecorder::~TraceRecorder() { close(); }
 const TraceLayout& TraceRecorder::layout() const noexcept { return impl_->layout; }
 
 bool TraceRecorder::record(const TraceRow& row) noexcept {
-  Impl& i = *impl_;
-  const std::uint64_t n = i.accepted.load(std::memory_order_relaxed);
-  if (n - i.consumed.load(std::memory_order_acquire) >= i.slots.size()) {
-    i.dropped.fetch_add(1, std::memory_order_relaxed);
-    return false;
-  }
-  i.slots[n % i.slots.size()] = row;
-  i.accepted.store(n + 1, std::memory_order_release);
+  const auto slot = impl_->ring.slot();
+  if (!slot) return false;
+  impl_->slots[*slot] = row;
+  impl_->ring.commit();
   return true;
 }
 
-void TraceRecorder::wait_for_room() {
-  for (;;) {
-    const std::uint64_t done = impl_->consumed.load(std::memory_order_acquire);
-    if (impl_->accepted.load(std::memory_order_relaxed) - done < impl_->slots.size()) return;
-    impl_->consumed.wait(done, std::memory_order_acquire);
-  }
-}
+void TraceRecorder::wait_for_room() { impl_->ring.wait_for_room(); }
 
 void TraceRecorder::close() {
   impl_->closing.store(true, std::memory_order_release);
   if (impl_->writer.joinable()) impl_->writer.join();
 }
 
-std::uint64_t TraceRecorder::recorded() const noexcept {
-  return impl_->accepted.load(std::memory_order_relaxed);
-}
-std::uint64_t TraceRecorder::dropped() const noexcept {
-  return impl_->dropped.load(std::memory_order_relaxed);
-}
+std::uint64_t TraceRecorder::recorded() const noexcept { return impl_->ring.accepted(); }
+std::uint64_t TraceRecorder::dropped() const noexcept { return impl_->ring.lost(); }
 const std::vector<std::unique_ptr<TraceSink>>& TraceRecorder::sinks() const noexcept { return impl_->sinks; }
 
 }  // namespace servogate::report

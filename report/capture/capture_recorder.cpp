@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "report/row_ring.hpp"
+
 namespace servogate::report {
 
 namespace {
@@ -29,14 +31,10 @@ std::size_t rows_of(const CaptureLayout& layout, std::size_t rows) {
 
 struct CaptureRecorder::Impl {
   std::unique_ptr<Capture> capture;
-  std::size_t channels, rows;
-  // A ring: row n lies in slot n % rows from `accepted` > n until `consumed` > n. All of it exists from the
-  // start, so no page of it is touched for the first time inside a cycle.
+  std::size_t channels;
+  RowRing ring;
   std::vector<double> values;
   std::vector<image::Nanoseconds> times;
-  alignas(64) std::atomic<std::uint64_t> accepted{0};
-  alignas(64) std::atomic<std::uint64_t> consumed{0};
-  std::atomic<std::uint64_t> lost{0};
   moodycamel::ReaderWriterQueue<CaptureFrame> frames{kFrames};
   std::atomic<bool> closing{false};
   std::thread writer;
@@ -46,28 +44,24 @@ struct CaptureRecorder::Impl {
   Impl(std::unique_ptr<Capture> c, std::size_t n)
       : capture(std::move(c)),
         channels(capture->layout().channels.size()),
-        rows(rows_of(capture->layout(), n)),
-        values(rows * channels),
-        times(rows) {}
+        ring(rows_of(capture->layout(), n)),
+        values(ring.slots() * channels),
+        times(ring.slots()) {}
 
-  std::span<double> slot(std::uint64_t n) {
-    return std::span<double>(values).subspan(static_cast<std::size_t>(n % rows) * channels, channels);
+  std::span<double> row_in(std::size_t slot) {
+    return std::span<double>(values).subspan(slot * channels, channels);
   }
 
   bool drain() {
-    const std::uint64_t from = consumed.load(std::memory_order_relaxed);
-    const std::uint64_t to = accepted.load(std::memory_order_acquire);
     // In the order of time: all frames of a cycle were handed over before its row.
-    for (std::uint64_t n = from; n < to; ++n) {
-      const image::Nanoseconds t = times[static_cast<std::size_t>(n % rows)];
+    return ring.drain(ring.slots(), [this](std::size_t slot) {
+      const image::Nanoseconds t = times[slot];
       for (const CaptureFrame* f = frames.peek(); f != nullptr && f->t_ns <= t; f = frames.peek()) {
         capture->frame(*f);
         frames.pop();
       }
-      capture->row(t, slot(n));
-      consumed.store(n + 1, std::memory_order_release);
-    }
-    return from != to;
+      capture->row(t, row_in(slot));
+    }) > 0;
   }
 
   void run() {
@@ -93,29 +87,22 @@ CaptureRecorder::CaptureRecorder(std::unique_ptr<Capture> capture, std::size_t r
 CaptureRecorder::~CaptureRecorder() { close(); }
 
 std::span<double> CaptureRecorder::slot() noexcept {
-  Impl& i = *impl_;
-  const std::uint64_t n = i.accepted.load(std::memory_order_relaxed);
-  if (n - i.consumed.load(std::memory_order_acquire) < i.rows) return i.slot(n);
-  i.lost.fetch_add(1, std::memory_order_relaxed);
-  return {};
+  const auto slot = impl_->ring.slot();
+  return slot ? impl_->row_in(*slot) : std::span<double>();
 }
 
 void CaptureRecorder::commit(image::Nanoseconds t_ns) noexcept {
-  Impl& i = *impl_;
-  const std::uint64_t n = i.accepted.load(std::memory_order_relaxed);
-  i.times[static_cast<std::size_t>(n % i.rows)] = t_ns;
-  i.accepted.store(n + 1, std::memory_order_release);
+  impl_->times[*impl_->ring.slot()] = t_ns;
+  impl_->ring.commit();
 }
 
 void CaptureRecorder::frame(const CaptureFrame& frame) noexcept {
-  if (!impl_->frames.try_enqueue(frame)) impl_->lost.fetch_add(1, std::memory_order_relaxed);
+  if (!impl_->frames.try_enqueue(frame)) impl_->ring.lose();
 }
 
 void CaptureRecorder::wait_for_room() const {
-  const Impl& i = *impl_;
-  while (i.accepted.load(std::memory_order_relaxed) - i.consumed.load(std::memory_order_acquire) >= i.rows ||
-         i.frames.size_approx() >= kFrames - kFrameRoom)
-    std::this_thread::yield();
+  impl_->ring.wait_for_room();
+  while (impl_->frames.size_approx() >= kFrames - kFrameRoom) std::this_thread::yield();
 }
 
 std::string CaptureRecorder::close() {
@@ -124,7 +111,7 @@ std::string CaptureRecorder::close() {
   return impl_->error;
 }
 
-std::uint64_t CaptureRecorder::lost() const noexcept { return impl_->lost.load(std::memory_order_relaxed); }
+std::uint64_t CaptureRecorder::lost() const noexcept { return impl_->ring.lost(); }
 int CaptureRecorder::files() const noexcept { return impl_->files; }
 
 }  // namespace servogate::report

@@ -179,15 +179,48 @@ TEST(LostMotionFit, parts_backlash_from_twist) {
   EXPECT_NEAR(fit->stiffness_nm_rad, 300.0, 1e-6);
 }
 
+TEST(LostMotionFit, leaves_out_places_where_the_load_gave_way) {
+  std::vector<Press> presses;
+  for (int place = 0; place < 6; ++place)
+    for (const double torque : {0.05, 0.1, -0.05, -0.1}) {
+      const double gave_way = place >= 4 && torque < 0.0 ? 0.005 * place : 0.0;
+      const double off = 1e-5 * (place % 3);
+      presses.push_back(
+          {torque, 0.3 * place + std::copysign(0.004, torque) + torque / 300.0 - gave_way + off, place});
+    }
+  const auto fit = fit_lost_motion(presses);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->backlash_rad, 0.008, 1e-6);
+  EXPECT_NEAR(fit->stiffness_nm_rad, 300.0, 1e-6) << "where the load stands does not matter to the twist";
+}
+
+TEST(FrictionFit, goes_by_what_moves_it_from_rest_where_slow_speeds_stick_and_slip) {
+  const FrictionCurve truth{0.37, 0.0025, 0.0, 0.18, 3.9, 0.0};
+  std::vector<FrictionPoint> points;
+  for (const double side : {1.0, -1.0}) {
+    for (const double speed : {1.0, 1.8, 3.2, 5.6, 10.0, 18.0, 32.0, 56.0, 100.0}) {
+      // Sticking and slipping, it has the friction of neither its mean speed nor of rest.
+      const double off = speed == 1.8 ? -0.04 : speed == 5.6 ? 0.035 : 0.0;
+      points.push_back({side * speed, truth.at(side * speed) + side * off, 0.004});
+    }
+    points.push_back({side * FrictionPoint::kAtRest, truth.at(side * FrictionPoint::kAtRest), 0.002});
+  }
+  const auto fit = fit_friction(points);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->breakaway_nm(), truth.breakaway_nm(), 0.01 * truth.breakaway_nm());
+  EXPECT_NEAR(fit->coulomb_nm, truth.coulomb_nm, 0.02 * truth.coulomb_nm);
+  EXPECT_NEAR(fit->viscous_nm_s, truth.viscous_nm_s, 0.05 * truth.viscous_nm_s);
+}
+
 TEST(LostMotionFit, claims_no_backlash_within_its_scatter) {
   std::mt19937_64 random(12);
   std::normal_distribution<double> off(0.0, 2e-4);
   int claimed = 0;
   for (int trial = 0; trial < 100; ++trial) {
     std::vector<Press> presses;
-    for (int round = 0; round < 4; ++round)
+    for (int place = 0; place < 6; ++place)
       for (const double torque : {0.05, 0.1, -0.05, -0.1})
-        presses.push_back({torque, torque / 100.0 + off(random)});
+        presses.push_back({torque, place + torque / 100.0 + off(random), place});
     const auto fit = fit_lost_motion(presses);
     claimed += fit && fit->backlash_rad > 0.0 ? 1 : 0;
   }

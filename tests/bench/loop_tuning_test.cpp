@@ -58,6 +58,27 @@ TEST(LoopTuning, of_random_masses_and_delays_keeps_its_margins_and_is_as_stiff_a
   }
 }
 
+TEST(LoopTuning, finds_a_position_gain_on_a_response_that_begins_late) {
+  const LoopGains present{0.4, 60.0, 20.0};
+  FrequencyResponse open = loop_of(present, 1e-3, 1e-3);
+  const auto whole = tune(open, present, {});
+  open.valid_from_hz = 50.0;
+  const auto part = tune(open, present, {});
+  ASSERT_TRUE(whole && part);
+  EXPECT_NEAR(part->gains.position_gain, whole->gains.position_gain, 0.2 * whole->gains.position_gain);
+  EXPECT_TRUE(part->position.phase_margin_deg);
+}
+
+TEST(LoopTuning, names_no_position_gain_where_none_keeps_the_wish) {
+  const LoopGains present{0.4, 60.0, 20.0};
+  TuningWish wish;
+  wish.position_peak_db = -1.0;  // no loop with an integrator does
+  const auto found = tune(loop_of(present, 1e-3, 1e-3), present, wish);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->gains.position_gain, 0.0);
+  EXPECT_FALSE(found->position.crossover_hz);
+}
+
 TEST(LoopTuning, promises_nothing_beyond_what_was_measured) {
   const LoopGains present{0.1, 10.0, 20.0};
   // A loop without any delay up to 100 Hz: a crossover near or beyond that cannot be known to be stable.

@@ -412,6 +412,50 @@ TEST_F(Bench, what_a_killed_run_has_changed_is_put_right_by_the_next_one) {
   EXPECT_NE(facts("sdo $BUS 5 read 6041")["value"].get<int>() & 0x6F, 0x27) << "not Operation enabled";
 }
 
+TEST_F(Bench, a_drive_whose_run_is_killed_under_power_stops_by_itself) {
+  drives("5");
+  const auto hear = join();
+  // A computer that stands still ends the run before: again then.
+  bool turned = false;
+  for (int attempt = 0; attempt < 10 && !turned; ++attempt) {
+    usercan::Process run({"bench",
+                          "jog",
+                          bus(),
+                          "5",
+                          "0.2",
+                          "--duration",
+                          "60",
+                          "--travel",
+                          "-50..50",
+                          "--speed",
+                          "2",
+                          "--torque",
+                          "1",
+                          "--listen",
+                          "0.1",
+                          "--cycle",
+                          "20000",
+                          "--out",
+                          path("killed" + std::to_string(attempt)),
+                          "--i-may-move"});
+    EXPECT_TRUE(tests::comes([&] {
+      image::CanFrame f;
+      while (hear->receive(f))
+        turned = turned || (f.id == 0x185 && f.length == 8 && (f.data[0] & 0x6F) == 0x27 && f.data[3] > 0x40);
+      return turned || run.ended();
+    }));
+    run.signal(SIGKILL);
+    turned = run.wait() == -1 && turned;
+  }
+  ASSERT_TRUE(turned) << "no run came to power";
+  // The drive waits for the heartbeat of its master (1016h) and stops (6007h).
+  EXPECT_TRUE(
+      tests::comes([&] { return (facts("sdo $BUS 5 read 6041")["value"].get<int>() & 0x6F) != 0x27; }));
+  EXPECT_TRUE(tests::comes([&] { return facts("sdo $BUS 5 read 606C")["value"] == 0; }));
+  const auto stands = facts("sdo $BUS 5 read 6064")["value"];
+  EXPECT_EQ(facts("sdo $BUS 5 read 6064")["value"], stands);
+}
+
 TEST_F(Bench, a_drive_in_fault_gets_no_power_and_its_reset_is_the_command_that_is_named) {
   drives("5", {"--fault", "over_current at=0.1"});
   const std::string words =

@@ -272,7 +272,7 @@ TEST_F(Workbench, od_restores_what_was_changed_and_compares_before_and_after) {
   EXPECT_TRUE(again["before"].empty());
 }
 
-TEST_F(Workbench, od_restores_the_file_of_a_device_into_its_successor) {
+TEST_F(Workbench, od_restores_the_file_of_another_serial_number_only_when_that_is_meant) {
   drives("5");
   ASSERT_EQ(tool("od $BUS 5 --save a.dcf").code, 0);
   std::string other = desk_.text("a.dcf");
@@ -281,7 +281,12 @@ TEST_F(Workbench, od_restores_the_file_of_a_device_into_its_successor) {
   other.replace(at, other.find('\r', at) - at, "ParameterValue=0x00000007");
   desk_.write("b.dcf", other);
   ASSERT_EQ(tool("sdo $BUS 5 write 6083 1234").code, 0);
-  const Ended ended = tool("od $BUS 5 --restore b.dcf");
+  const Ended refused = tool("od $BUS 5 --restore b.dcf");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_TRUE(refused.err_has("serial number 7 (00000007h), node 5 has 5 (00000005h)")) << refused.err;
+  EXPECT_TRUE(refused.err_has("--anyway")) << refused.err;
+  EXPECT_EQ(facts("sdo $BUS 5 read 6083")["value"], 1234) << "nothing was written";
+  const Ended ended = tool("od $BUS 5 --restore b.dcf --anyway");
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_TRUE(ended.err_has("serial number")) << ended.err;
   EXPECT_FALSE(ended.out_has("1018h:04")) << "it is no parameter: " << ended.out;

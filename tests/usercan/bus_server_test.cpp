@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "tests/comes.hpp"
@@ -269,15 +270,46 @@ TEST(SocketcandBus, time_stamps_are_of_the_monotonic_clock) {
   EXPECT_LE(f.timestamp_ns, now() + image::kMillisecond);
 }
 
-TEST(SocketcandBus, does_not_collect_small_writes) {
+/// The connected TCP sockets of this process at that port, server and clients; what an option of each is.
+std::vector<int> options_of_peers(std::uint16_t port, int option) {
+  std::vector<int> found;
+  for (int s = 0; s < 1024; ++s) {
+    sockaddr_in own{}, peer{};
+    socklen_t own_size = sizeof own, peer_size = sizeof peer;
+    if (getsockname(s, reinterpret_cast<sockaddr*>(&own), &own_size) != 0 ||
+        getpeername(s, reinterpret_cast<sockaddr*>(&peer), &peer_size) != 0 || own.sin_family != AF_INET ||
+        (ntohs(own.sin_port) != port && ntohs(peer.sin_port) != port))
+      continue;
+    int set = -1;
+    socklen_t size = sizeof set;
+    EXPECT_EQ(getsockopt(s, IPPROTO_TCP, option, &set, &size), 0);
+    found.push_back(set);
+  }
+  return found;
+}
+
+TEST(SocketcandBus, does_not_collect_small_writes_at_either_end) {
   RunningServer server;
-  drivers::Notice why;
-  const int socket = connect_to(server.address(), why);
-  int set = 0;
-  socklen_t size = sizeof set;
-  EXPECT_EQ(getsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &set, &size), 0);
-  EXPECT_NE(set, 0);
-  close(socket);
+  const auto a = server.join(), b = server.join();
+  EXPECT_EQ(options_of_peers(server.address().port, TCP_NODELAY), (std::vector<int>{1, 1, 1, 1}));
+}
+
+// Linux turns to delayed acknowledgement once a socket has answered what it read; what is set is lost by
+// that.
+TEST(SocketcandBus, acknowledges_at_once_after_it_has_answered) {
+  RunningServer server;
+  const auto a = server.join(), b = server.join();
+  CanFrame f;
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_TRUE(a->send(make(0x1, {})) && wait_for(*b, f));
+    ASSERT_TRUE(b->send(make(0x2, {})) && wait_for(*a, f));
+  }
+  const auto at_once = [&] {
+    const std::vector<int> set = options_of_peers(server.address().port, TCP_QUICKACK);
+    return std::count(set.begin(), set.end(), 1);
+  };
+  // Who has read last: the client a, and the server of b. The others have sent since.
+  EXPECT_GE(at_once(), 2);
 }
 
 TEST(SocketcandBus, allocates_nothing_while_frames_pass) {

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace servogate::bench {
 namespace {
@@ -49,6 +50,7 @@ Fit fit(std::span<const FrictionPoint> points, double width) {
 double best_width(std::span<const FrictionPoint> points) {
   double slowest = 1e300, fastest = 0.0;
   for (const FrictionPoint& p : points) {
+    if (std::abs(p.speed_rad_s) <= FrictionPoint::kAtRest) continue;
     slowest = std::min(slowest, std::abs(p.speed_rad_s));
     fastest = std::max(fastest, std::abs(p.speed_rad_s));
   }
@@ -77,18 +79,7 @@ double best_width(std::span<const FrictionPoint> points) {
   return std::exp(0.5 * (a + b));
 }
 
-}  // namespace
-
-double FrictionCurve::at(double speed) const noexcept {
-  const double extra = stribeck_speed_rad_s > 0.0 ? stribeck_nm * bell(speed, stribeck_speed_rad_s) : 0.0;
-  return load_nm + std::copysign(coulomb_nm + extra, speed) + viscous_nm_s * speed;
-}
-
-std::optional<FrictionCurve> fit_friction(std::span<const FrictionPoint> points) {
-  const auto forward =
-      std::count_if(points.begin(), points.end(), [](const auto& p) { return p.speed_rad_s > 0.0; });
-  if (points.size() < 5 || forward == 0 || forward == static_cast<std::ptrdiff_t>(points.size()))
-    return std::nullopt;
+FrictionCurve curve_of(std::span<const FrictionPoint> points) {
   const Fit plain = fit(points, 0.0);
   FrictionCurve curve;
   const double width = points.size() >= 7 ? best_width(points) : 0.0;
@@ -102,6 +93,40 @@ std::optional<FrictionCurve> fit_friction(std::span<const FrictionPoint> points)
     curve.stribeck_nm = belled.x(3);
     curve.stribeck_speed_rad_s = width;
   }
+  return curve;
+}
+
+/// Points far from the curve that the others make count less: a load that sticks and slips has no friction at
+/// its mean speed. Source of the weight: Cauchy's, of iteratively reweighted least squares.
+std::vector<FrictionPoint> reweighted(std::span<const FrictionPoint> points, const FrictionCurve& curve) {
+  constexpr double kCut = 2.385;
+  std::vector<double> off;
+  for (const FrictionPoint& p : points)
+    off.push_back(std::abs(p.torque_nm - curve.at(p.speed_rad_s)) / p.deviation_nm);
+  std::vector<double> sorted = off;
+  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double scale = kCut * std::max(1.0, 1.4826 * *middle);
+  std::vector<FrictionPoint> out(points.begin(), points.end());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].deviation_nm *= std::hypot(1.0, off[i] / scale);
+  return out;
+}
+
+}  // namespace
+
+double FrictionCurve::at(double speed) const noexcept {
+  const double extra = stribeck_speed_rad_s > 0.0 ? stribeck_nm * bell(speed, stribeck_speed_rad_s) : 0.0;
+  return load_nm + std::copysign(coulomb_nm + extra, speed) + viscous_nm_s * speed;
+}
+
+std::optional<FrictionCurve> fit_friction(std::span<const FrictionPoint> points) {
+  constexpr int kRounds = 8;
+  const auto forward =
+      std::count_if(points.begin(), points.end(), [](const auto& p) { return p.speed_rad_s > 0.0; });
+  if (points.size() < 5 || forward == 0 || forward == static_cast<std::ptrdiff_t>(points.size()))
+    return std::nullopt;
+  FrictionCurve curve = curve_of(points);
+  for (int round = 0; round < kRounds; ++round) curve = curve_of(reweighted(points, curve));
   double squares = 0.0;
   for (const FrictionPoint& p : points) squares += std::pow(p.torque_nm - curve.at(p.speed_rad_s), 2);
   curve.residual_nm = std::sqrt(squares / static_cast<double>(points.size()));

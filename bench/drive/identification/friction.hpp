@@ -5,8 +5,9 @@
 
 namespace servogate::bench {
 
-/// Mean torque at an even speed.
+/// Mean torque at an even speed, or torque that moves it from rest.
 struct FrictionPoint {
+  static constexpr double kAtRest = 1e-9;  ///< rad/s, with the sign of the motion that begins
   double speed_rad_s = 0.0;
   double torque_nm = 0.0;
   double deviation_nm = 1e-3;  ///< standard deviation of that mean, above 0

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bench/drive/excitation/signal.hpp"
+#include "bench/drive/measurement/at_rest.hpp"
 
 namespace servogate::bench {
 namespace {
@@ -288,123 +289,6 @@ double bias_beyond_resonance(const IdentifyPlan& plan, const Identified& out, co
   return std::max(plan.bias_rad_s, std::min(plan.fast_rad_s, kBeyond * bias_at_it));
 }
 
-/// Presses the motor against a load at rest, with what cogging takes given back: it could hold the motor in
-/// the middle of the gap.
-class Presser {
- public:
-  /// Of the speed loop on the motor alone, rad/s: slow against the dead time of a bus.
-  static constexpr double kCreepBandwidth = 60.0;
-
-  Presser(Guard& guard, const Identified& found, double motor_inertia, double hold_nm)
-      : guard_(guard),
-        found_(found),
-        gain_(kCreepBandwidth * motor_inertia),
-        angle_(guard.answer().position_rad) {
-    // So slow that what the motor carries into the load is less than a third of what holds that.
-    if (found.masses.coupling)
-      creep_ = 0.3 * hold_nm / std::sqrt(found.masses.coupling->stiffness_nm_rad * motor_inertia);
-    angle_time_s_ = angle_time(found, motor_inertia);
-    // The cogging that is given back lags by so little of its period.
-    if (found.cogging) creep_ = std::min(creep_, 0.4 / (found.cogging->periods * angle_time_s_));
-    creep_ = std::clamp(creep_, 0.02, 1.0);
-    most_ = 0.3 * hold_nm;
-  }
-
-  /// Lets the coupling go slowly, so that it throws the motor nowhere, and creeps in this direction until it
-  /// stands: softly, so that it comes to rest at the load's face.
-  bool touch(double side) {
-    constexpr double kLongest_s = 2.0, kStill_s = 0.06;
-    const double h = guard_.period_s();
-    if (!ramp_to(0.0)) return false;
-    double filtered = 0.0, still = 0.0;
-    for (double t = 0.0; t < kLongest_s && still < kStill_s; t += h) {
-      filtered += 0.3 * (guard_.speed_rad_s() - filtered);
-      torque_ = std::clamp(gain_ * (side * creep_ - filtered), -most_, most_);
-      if (!ask(torque_)) return false;
-      still = std::abs(filtered) < 0.15 * creep_ ? still + h : 0.0;
-    }
-    return true;
-  }
-
-  /// From there to this torque, slowly against any resonance, and waits; where it stands then.
-  bool press(double torque, std::vector<Press>& presses) {
-    constexpr double kWait_s = 0.25, kLook_s = 0.1;
-    const double h = guard_.period_s(), wait = std::max(kWait_s, 5.0 * angle_time_s_);
-    if (!ramp_to(torque)) return false;
-    for (double t = 0.0; t < wait; t += h)
-      if (!ask(torque)) return false;
-    double angle = 0.0, count = 0.0;
-    for (double t = 0.0; t < kLook_s; t += h) {
-      if (!ask(torque)) return false;
-      angle += guard_.answer().position_rad;
-      count += 1.0;
-    }
-    presses.push_back({torque, angle / count});
-    return true;
-  }
-
- private:
-  bool ramp_to(double torque) {
-    constexpr double kRamp_s = 0.2;
-    const double h = guard_.period_s(), from = torque_;
-    for (double t = h; t < kRamp_s; t += h)
-      if (!ask(from + (torque - from) * t / kRamp_s)) return false;
-    torque_ = torque;
-    return true;
-  }
-
-  /// The angle for the cogging is taken slowly: at the motor's resonance on the coupling the way over the bus
-  /// would make a spring of it that swings up. So slowly that what it drives there is half of what the
-  /// coupling damps.
-  static double angle_time(const Identified& found, double motor_inertia) {
-    constexpr double kLeast_s = 0.03, kMost_s = 0.2;
-    const auto& coupling = found.masses.coupling;
-    if (!coupling || !found.cogging) return kLeast_s;
-    const double steepest = found.cogging->amplitude_nm * found.cogging->periods;
-    const double damps = coupling->stiffness_nm_rad * std::max(coupling->damping_nm_s, 1e-9);
-    return std::clamp(2.0 * steepest * motor_inertia / damps, kLeast_s, kMost_s);
-  }
-  bool ask(double net) {
-    const double most = guard_.envelope().torque_nm;
-    angle_ += (1.0 - std::exp(-guard_.period_s() / angle_time_s_)) * (guard_.answer().position_rad - angle_);
-    const double cogging = found_.cogging ? found_.cogging->at(angle_) : 0.0;
-    return guard_.step(Loop::torque, std::clamp(net + cogging, -most, most));
-  }
-
-  Guard& guard_;
-  const Identified& found_;
-  double gain_, creep_ = 0.1, most_, torque_ = 0.0, angle_, angle_time_s_ = 0.0;
-};
-
-/// Friction alone stops it: a stiff speed loop could rattle in the backlash.
-bool coast_to_rest(Guard& guard, double load_nm) {
-  constexpr double kLongest_s = 3.0, kStill_s = 0.1, kStill = 0.1;
-  double still = 0.0, filtered = guard.speed_rad_s();
-  for (double t = 0.0; t < kLongest_s && still < kStill_s; t += guard.period_s()) {
-    if (!guard.step(Loop::torque, load_nm)) return false;
-    filtered += 0.3 * (guard.speed_rad_s() - filtered);
-    still = std::abs(filtered) < kStill ? still + guard.period_s() : 0.0;
-  }
-  return true;
-}
-
-bool take_lost_motion(Guard& guard, Identified& out) {
-  const double hold = out.friction.breakaway_nm() - std::abs(out.friction.load_nm);
-  if (!(hold > 0.0)) return true;
-  const double motor =
-      out.masses.coupling ? out.masses.coupling->motor_inertia_kg_m2 : out.masses.inertia_kg_m2;
-  Presser presser(guard, out, motor, hold);
-  std::vector<Press> presses;
-  for (int round = 0; round < 2; ++round)
-    for (const double side : {1.0, -1.0}) {
-      if (!presser.touch(side)) return false;
-      for (const double share : {0.3, 0.6})
-        if (!presser.press(side * share * hold, presses)) return false;
-    }
-  out.lost_motion = fit_lost_motion(presses);
-  return true;
-}
-
 }  // namespace
 
 Reach reach_of(const IdentifyPlan& plan, double period) {
@@ -465,8 +349,12 @@ std::optional<Identified> identify(Guard& guard, const IdentifyPlan& plan, std::
   if (const auto again = fit_friction(out.friction_points)) out.friction = *again;
   if (plan.lost_motion) {
     guard.stage("lost motion");
-    if (!coast_to_rest(guard, out.friction.load_nm)) return std::nullopt;
-    if (!take_lost_motion(guard, out)) return std::nullopt;
+    AtRest at_rest;
+    if (!look_at_rest(guard, {out.friction, out.cogging, out.masses}, at_rest)) return std::nullopt;
+    out.lost_motion = fit_lost_motion(at_rest.presses);
+    out.friction_points.insert(out.friction_points.end(), at_rest.breakaways.begin(),
+                               at_rest.breakaways.end());
+    if (const auto again = fit_friction(out.friction_points)) out.friction = *again;
   }
   why.clear();
   return out;

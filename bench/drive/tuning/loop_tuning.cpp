@@ -9,6 +9,7 @@ namespace servogate::bench {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kLeastPositionGain = 1.0;  ///< 1/s
 
 Complex controller(const LoopGains& g, double hz) {
   const Complex pi = g.velocity_gain * (1.0 + g.velocity_integral / Complex(0.0, kTurn * hz));
@@ -61,9 +62,11 @@ FrequencyResponse position_loop(const FrequencyResponse& closed_velocity, double
   open.valid_to_hz = closed_velocity.valid_to_hz;
   constexpr int kBelow = 200;
   const double first = closed_velocity.valid_from_hz;
-  open.valid_from_hz = first / 100.0;
+  // Below where the softest gain crosses, whatever the range.
+  open.valid_from_hz = std::min(first / 100.0, 0.5 * kLeastPositionGain / kTurn);
   for (int i = 0; i < kBelow; ++i) {
-    const double hz = open.valid_from_hz * std::pow(100.0, static_cast<double>(i) / kBelow);
+    const double hz =
+        open.valid_from_hz * std::pow(first / open.valid_from_hz, static_cast<double>(i) / kBelow);
     open.lines.push_back({hz, gain / Complex(0.0, kTurn * hz), 1.0});
   }
   for (const ResponseLine& line : closed_velocity.lines)
@@ -74,7 +77,7 @@ FrequencyResponse position_loop(const FrequencyResponse& closed_velocity, double
 
 double stiffest_position_gain(const FrequencyResponse& closed_velocity, const TuningWish& wish) {
   double best = 0.0;
-  for (double gain = 1.0; gain < 2000.0; gain *= 1.05) {
+  for (double gain = kLeastPositionGain; gain < 2000.0; gain *= 1.05) {
     const FrequencyResponse open = position_loop(closed_velocity, gain);
     const Margins m = margins(open);
     const bool good = m.phase_margin_deg.value_or(0.0) >= 60.0 &&
@@ -147,7 +150,9 @@ std::optional<Tuning> tune(const FrequencyResponse& open_loop, const LoopGains& 
   }
   if (!best) return best;
   best->gains.position_gain = stiffest_position_gain(best->closed, wish);
-  best->position = margins(position_loop(best->closed, best->gains.position_gain));
+  best->position = best->gains.position_gain > 0.0
+                       ? margins(position_loop(best->closed, best->gains.position_gain))
+                       : Margins{};
   return best;
 }
 

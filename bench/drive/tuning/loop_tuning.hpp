@@ -55,8 +55,8 @@ FrequencyResponse with_gains(const FrequencyResponse& open_loop, const LoopGains
 std::optional<Tuning> expect(const FrequencyResponse& open_loop, const LoopGains& present,
                              const LoopGains& wanted);
 /// The stiffest gains that keep the wish: the greatest velocity gain, with it the greatest integral rate, and
-/// on that loop the greatest position gain; with this notch, or nullptr with the present one. nullopt: none
-/// within `most_times` keeps it.
+/// on that loop the greatest position gain, 0: not even 1/s goes without overshoot; with this notch, or
+/// nullptr with the present one. nullopt: none within `most_times` keeps it.
 std::optional<Tuning> tune(const FrequencyResponse& open_loop, const LoopGains& present,
                            const TuningWish& wish, const Notch* notch = nullptr);
 /// A notch for the strongest resonance of the open loop beyond its crossover; nullopt: none stands out.

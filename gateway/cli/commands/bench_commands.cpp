@@ -153,6 +153,7 @@ void add_identify(CLI::App& bench, BenchOptions& o) {
   add_drive(c, o);
   o.from_hz = 2.0;
   o.to_hz = 180.0;
+  o.time_s = 150.0;
   add_band(c, o);
   c.add_option("--slowest", o.slowest_rev_s, "Slowest speed of the friction curve in rev/s")
       ->type_name("REV/S")

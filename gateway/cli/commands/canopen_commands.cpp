@@ -100,6 +100,8 @@ void add_od(CLI::App& app, OdOptions& o) {
   add_timeout(c, o);
   add_no_block(c, o);
   add_anyway(c, o);
+  c.get_option("--anyway")
+      ->description("Reads although somebody controls the bus; --restore: the DCF of another serial number");
   c.footer("Example: servogate od socketcan:can0 5 --eds drive.eds --save node5.dcf");
 }
 

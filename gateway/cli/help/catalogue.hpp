@@ -291,6 +291,8 @@ inline constexpr Translation kCatalogue[] = {
     {"Long objects in segments, never in blocks", "Длинные объекты сегментами, без блочной передачи"},
     {"How long the bus must show no master before, in s, 0.1 to 60",
      "Сколько времени на шине не должно быть ведущего, в с, от 0.1 до 60"},
+    {"Reads although somebody controls the bus; --restore: the DCF of another serial number",
+     "Читает, хотя шиной кто-то управляет; --restore: DCF другого заводского номера"},
     {"Reads although somebody controls the bus", "Читает, хотя шиной кто-то управляет"},
     {"A drive may move", "Привод может двигаться"},
     {"Who is on a CANopen bus: every node that answers or is heard.",

@@ -50,8 +50,9 @@ int record_on(ToolBus& bus, const BenchOptions& o, const DriveUse& use, ReadObje
     complain(kOffline, {std::to_string(o.node), text::number(static_cast<double>(n) * drive->period_s(), 3)});
     return kAlarm;
   }
-  objects.read(bus, o.node, "after");
+  // Without process data no SYNC is missed.
   drive->leave();
+  objects.read(bus, o.node, "after");
   json meta{{"schema", 1},
             {"command", "bench record"},
             {"bus", o.bus},

@@ -259,8 +259,9 @@ int run_on_bus(ToolBus& bus, const char* command, const BenchOptions& o, BenchPl
   BenchWork one{o, *guard, *drive, meta, {}};
   const bool found = work(one);
   const bool off = guard->release();
-  plan.objects.read(bus, o.node, "after");
+  // Without process data no SYNC is missed.
   drive->leave();
+  plan.objects.read(bus, o.node, "after");
   if (const json facts = plan.objects.facts(); !facts.empty()) meta["objects"] = facts;
   return finish(one, found, plan.limits, off);
 }

@@ -29,6 +29,17 @@ const text::Entry kNone{
     "no gains within ten times the present ones keep {0} degrees; see {1}/response/report.html",
     "ни при каких коэффициентах в пределах десятикратных нет запаса {0} градусов; см. "
     "{1}/response/report.html"};
+const text::Entry kNoPosition{
+    "bench.tune-no-position",
+    "no position gain from 1/s on goes without overshoot on the velocity loop with {0} N m s/rad, whose "
+    "response is "
+    "valid from {1} to {2} Hz; a greater --phase-margin asks for a softer velocity loop, and more "
+    "--amplitude "
+    "widens the range; see {3}/response/report.html",
+    "ни при каком коэффициенте положения от 1/с нет работы без перерегулирования на контуре скорости с {0} "
+    "Н·м·с/рад, "
+    "характеристика которого достоверна от {1} до {2} Гц; больший --phase-margin даст более мягкий контур "
+    "скорости, больший --amplitude расширит диапазон; см. {3}/response/report.html"};
 const text::Entry kGains{"bench.tune-gains",
                          "{0}: velocity {1} N m s/rad, integral {2} 1/s, position {3} 1/s",
                          "{0}: скорость {1} Н·м·с/рад, интеграл {2} 1/с, положение {3} 1/с"};
@@ -231,6 +242,12 @@ class Tuner {
     propose_notch(open, wish);
     if (!tuning_) {
       complain(kNone, {text::number(o_.phase_margin_deg), o_.out});
+      return finish(kAlarm);
+    }
+    if (file_.has(&LoopGains::position_gain) && !(tuning_->gains.position_gain > 0.0)) {
+      complain(kNoPosition, {text::number(tuning_->gains.velocity_gain, 6),
+                             text::number(open.valid_from_hz, 1), text::number(open.valid_to_hz, 1), o_.out});
+      tuning_.reset();
       return finish(kAlarm);
     }
     if (!file_.has(&LoopGains::velocity_integral))

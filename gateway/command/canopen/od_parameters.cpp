@@ -32,8 +32,15 @@ const text::Entry kMany{"od.differences", "{0} of {1} parameters differ from {2}
 const text::Entry kOtherDevice{
     "od.other-device", "{0} is of another device: its {1} is {2}, node {3} has {4}; nothing was written",
     "{0} — от другого устройства: {1} в файле {2}, у узла {3} — {4}; ничего не записано"};
-const text::Entry kOtherSerial{
-    "od.other-serial",
+const text::Entry kOtherSerial{"od.other-serial",
+                               "{0} is of the device with the serial number {1}, node {3} has {2}; nothing "
+                               "was written. If node {3} takes "
+                               "the place of that device, add --anyway",
+                               "{0} — от устройства с заводским номером {1}, у узла {3} — {2}; ничего не "
+                               "записано. Если узел {3} заменяет "
+                               "то устройство, добавьте --anyway"};
+const text::Entry kSuccessor{
+    "od.successor",
     "{0} is of the device with the serial number {1}, this one has {2}: its parameters are taken",
     "{0} — от устройства с заводским номером {1}, у этого {2}: параметры берутся"};
 const text::Entry kRestored{"od.restored", "{0} parameters of node {1} written",
@@ -134,8 +141,11 @@ int restore_parameters(const OdWork& work, const canopen::Eds& file) {
                             std::to_string(work.options.node), got_words(*d)});
     return kAlarm;
   }
-  if (const auto d = std::find_if(before.begin(), before.end(), is_serial_number); d != before.end())
-    complain(kOtherSerial, {path, d->wanted, got_words(*d)});
+  if (const auto d = std::find_if(before.begin(), before.end(), is_serial_number); d != before.end()) {
+    complain(work.options.anyway ? kSuccessor : kOtherSerial,
+             {path, d->wanted, got_words(*d), std::to_string(work.options.node)});
+    if (!work.options.anyway) return kAlarm;
+  }
   take_serial_number_out(before);
   if (!work.options.json) print_rows(before, catalogue);
   std::vector<FailedWrite> failed;
