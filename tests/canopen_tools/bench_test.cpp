@@ -50,6 +50,21 @@ TEST_F(Lockstep, a_jog_turns_in_every_mode_and_ends_by_itself_where_the_travel_e
   }
 }
 
+TEST_F(Lockstep, any_key_of_the_terminal_ends_a_jog_by_its_ramp) {
+  // `script` is a terminal; the key comes once the drive turns. The travel lasts for hours of granted time.
+  const Ended ended = on_drive(
+      "--version >seen; ( until grep -q 'Operation enabled' seen; do sleep 0.02; done; printf x ) | script "
+      "-qefc \"$SG bench jog $DRIVE 1 --mode csv --travel -3..90000 --speed 5 --torque 1 --i-may-move "
+      "--listen 0.1 "
+      "--out keyed\" seen",
+      "friction=0.02");
+  EXPECT_EQ(ended.code, 0) << desk_.text("seen");
+  const json kept = json::parse(desk_.text("keyed/meta.json"), nullptr, false);
+  EXPECT_EQ(kept["figures"]["ended_by"], "key") << kept;
+  EXPECT_LT(kept["figures"]["position_rev"], 89000.0);
+  EXPECT_EQ(kept["off"], true);
+}
+
 TEST_F(Lockstep, a_jog_that_would_leave_its_envelope_gets_no_power) {
   const Ended ended = bench("jog $DRIVE 6" + std::string(kSmall));
   EXPECT_EQ(ended.code, 1);
@@ -130,6 +145,31 @@ TEST_F(Lockstep, objects_are_recorded_by_pdo_with_the_samples_of_a_run) {
   EXPECT_NEAR(std::stod(cells), 262144.0, 15000.0) << row;
   EXPECT_EQ(meta()["objects"]["6079h:00"]["name"], "DC link circuit voltage");
   EXPECT_EQ(meta()["objects"]["6079h:00"]["before"], meta()["drive"]["dc_link_mv"]);
+}
+
+TEST_F(Lockstep, what_the_data_sheet_calls_a_temperature_is_kept_with_every_run) {
+  EXPECT_TRUE(drives("9", {"--write-eds", path("servo.eds")}).says("servo.eds: EDS of node 9"));
+  std::string sheet = desk_.text("servo.eds");
+  const std::size_t list = sheet.find("[ManufacturerObjects]");
+  ASSERT_NE(list, std::string::npos);
+  const std::size_t end = sheet.find("\n[", list + 1);
+  const std::string of_maker = sheet.substr(list, end - list);
+  const auto count = std::count(of_maker.begin(), of_maker.end(), '=');
+  sheet.replace(list, end - list,
+                "[ManufacturerObjects]\nSupportedObjects=" + std::to_string(count) +
+                    of_maker.substr(std::min(of_maker.size(), of_maker.find('\n', of_maker.find('=')))) +
+                    "\n" + std::to_string(count) + "=0x2f31\n");
+  sheet +=
+      "\n[2f31]\nParameterName=Heat sink temperature\nObjectType=7\nDataType=0x0003\nAccessType=ro\n"
+      "DefaultValue=412\n";
+  desk_.write("warm.eds", sheet);
+  sheet_ = path("warm.eds");
+  const Ended ended = bench("record $DRIVE statusword --rate 500 --duration 0.1 --eds " + sheet_);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const json kept = meta()["objects"]["2F31h:00"];
+  EXPECT_EQ(kept["name"], "Heat sink temperature") << meta();
+  EXPECT_EQ(kept["before"], 412);
+  EXPECT_EQ(kept["after"], 412);
 }
 
 TEST_F(Lockstep, a_record_gives_no_power_and_has_a_row_a_cycle) {

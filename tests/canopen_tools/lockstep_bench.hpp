@@ -20,7 +20,9 @@ class LockstepBench : public Workbench {
     auto bus = std::make_unique<usercan::Process>(
         std::vector<std::string>{"can", "bus", "can0", "--listen", "unix:" + socket, "--lockstep", "2"});
     EXPECT_TRUE(bus->says("can0"));
-    const usercan::Process drive({"drive", url, "--node", nodes, "--plant", plant});
+    std::vector<std::string> words{"drive", url, "--node", nodes, "--plant", plant};
+    if (!sheet_.empty()) words.insert(words.end(), {"--profile", sheet_});
+    const usercan::Process drive(words);
     EXPECT_TRUE(drive.says("node 5"));
     if (const std::size_t place = line.find("$BUS_OF_DRIVE"); place != std::string::npos)
       line.replace(place, 13, url);
@@ -44,6 +46,7 @@ class LockstepBench : public Workbench {
 
   bool is_timed_ = false;  ///< waits for what the server says of the time when a call has joined and left
   double lasted_s_ = 0.0;  ///< the last such call, in granted time
+  std::string sheet_;      ///< data sheet that the drive is made of; empty: that of a servo
   std::string out_;        ///< directory of the last call of bench()
 
  private:

@@ -352,6 +352,31 @@ TEST(Mcap, is_read_by_its_index_by_a_reader_that_shares_no_code) {
   EXPECT_EQ(n, expected.rows.size());
 }
 
+TEST(Csv, is_read_by_a_reader_that_shares_no_code) {
+  const Scratch scratch;
+  CsvCapture out(scratch.path("a.csv"));
+  Kept expected;
+  write_random(out, 11, 3000);
+  write_random(expected, 11, 3000);
+  const std::string command = "/usr/bin/python3 '" + tests::source_dir() + "/tests/report/read_csv.py' '" +
+                              scratch.path("a.csv") + "' >'" + scratch.path("out") + "' 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << content(scratch.path("out"));
+  std::istringstream rows(content(scratch.path("out")));
+  std::size_t n = 0;
+  for (long long t = 0; rows >> t; ++n) {
+    ASSERT_LT(n, expected.rows.size());
+    ASSERT_EQ(t, expected.rows[n].first - expected.rows[0].first);
+    for (std::size_t c = 0; c < 4; ++c) {
+      std::string cell;
+      rows >> cell;
+      const double read = std::strtod(cell.c_str(), nullptr), wrote = expected.rows[n].second[c];
+      ASSERT_TRUE(read == wrote || (std::isnan(read) && std::isnan(wrote)))
+          << n << ' ' << c << ' ' << cell << ' ' << wrote;
+    }
+  }
+  EXPECT_EQ(n, expected.rows.size());
+}
+
 TEST(Mcap, that_was_cut_off_or_changed_is_read_as_far_as_it_is_sound) {
   const std::uint64_t seed = servogate::test::property_seed();
   const Scratch scratch;

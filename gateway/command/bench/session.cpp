@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/command/bench/session.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -186,17 +188,52 @@ bool read_record_option(const BenchOptions& options, std::vector<RecordedObject>
   return objects.has_value();
 }
 
+namespace {
+
+/// What a drive measures and its data sheet calls a temperature. CiA 402 has no object for it.
+std::vector<canopen::ObjectAddress> temperatures_of(const canopen::Eds& eds) {
+  constexpr std::size_t kMost = 8;
+  std::vector<canopen::ObjectAddress> out;
+  const auto take = [&](std::uint16_t index, std::uint8_t subindex, const canopen::EdsEntry& entry) {
+    std::string name = entry.name;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool measured = entry.access == canopen::EdsAccess::ro || entry.access == canopen::EdsAccess::rwr;
+    if (measured && canopen::eds_type_bits(entry.data_type) != 0 &&
+        name.find("temperature") != std::string::npos && out.size() < kMost)
+      out.push_back({index, subindex});
+  };
+  for (const auto& [index, object] : eds.objects) {
+    if (object.subs.empty()) take(index, 0, object.entry);
+    for (const auto& [subindex, entry] : object.subs)
+      if (subindex != 0) take(index, subindex, entry);
+  }
+  return out;
+}
+
+}  // namespace
+
 bool ReadObjects::set(const BenchOptions& options) {
-  if (options.read.empty()) return true;
+  if (options.read.empty() && options.eds.empty()) return true;
   std::optional<canopen::Eds> eds;
   if (!options.eds.empty() && !(eds = read_data_sheet(options.eds))) return false;
   const canopen::ObjectCatalogue catalogue(eds ? &*eds : nullptr);
+  std::vector<canopen::ObjectAddress> wanted;
   for (const std::string& word : options.read) {
     const auto at = object_of_word(word, catalogue);
     if (!at) return false;
-    objects_.push_back(
-        {*at, catalogue.type(at->index, at->subindex), catalogue.name(at->index, at->subindex), {}, {}});
+    wanted.push_back(*at);
   }
+  if (eds)
+    for (const canopen::ObjectAddress& t : temperatures_of(*eds)) {
+      const auto same = [&t](const canopen::ObjectAddress& w) {
+        return w.index == t.index && w.subindex == t.subindex;
+      };
+      if (std::none_of(wanted.begin(), wanted.end(), same)) wanted.push_back(t);
+    }
+  for (const canopen::ObjectAddress& at : wanted)
+    objects_.push_back(
+        {at, catalogue.type(at.index, at.subindex), catalogue.name(at.index, at.subindex), {}, {}});
   return true;
 }
 
