@@ -325,16 +325,23 @@ TEST(Mcap, becomes_the_same_csv_as_a_capture_that_was_written_as_csv) {
   EXPECT_EQ(content(scratch.path("a.csv")).substr(0, 43), "t,X.command,X.actual,door_open,Mill.count\n0");
 }
 
+/// What a reader of this folder, which shares no code, prints of a file.
+void read_by(const char* reader, const Scratch& scratch, const char* file, const std::string& more,
+             std::istringstream& printed) {
+  const std::string command = "/usr/bin/python3 '" + tests::source_dir() + "/tests/report/" + reader + "' '" +
+                              scratch.path(file) + "' " + more + " >'" + scratch.path("out") + "' 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << content(scratch.path("out"));
+  printed.str(content(scratch.path("out")));
+}
+
 TEST(Mcap, is_read_by_its_index_by_a_reader_that_shares_no_code) {
   const Scratch scratch;
   McapCapture out(scratch.path("a.mcap"));
   Kept expected;
   write_random(out, 7, 8000);
   write_random(expected, 7, 8000);
-  const std::string command = "/usr/bin/python3 '" + tests::source_dir() + "/tests/report/read_mcap.py' '" +
-                              scratch.path("a.mcap") + "' /axis/X >'" + scratch.path("out") + "' 2>&1";
-  ASSERT_EQ(std::system(command.c_str()), 0) << content(scratch.path("out"));
-  std::istringstream lines(content(scratch.path("out")));
+  std::istringstream lines;
+  ASSERT_NO_FATAL_FAILURE(read_by("read_mcap.py", scratch, "a.mcap", "/axis/X", lines));
   std::string line;
   std::size_t n = 0;
   for (; std::getline(lines, line); ++n) {
@@ -358,10 +365,8 @@ TEST(Csv, is_read_by_a_reader_that_shares_no_code) {
   Kept expected;
   write_random(out, 11, 3000);
   write_random(expected, 11, 3000);
-  const std::string command = "/usr/bin/python3 '" + tests::source_dir() + "/tests/report/read_csv.py' '" +
-                              scratch.path("a.csv") + "' >'" + scratch.path("out") + "' 2>&1";
-  ASSERT_EQ(std::system(command.c_str()), 0) << content(scratch.path("out"));
-  std::istringstream rows(content(scratch.path("out")));
+  std::istringstream rows;
+  ASSERT_NO_FATAL_FAILURE(read_by("read_csv.py", scratch, "a.csv", "", rows));
   std::size_t n = 0;
   for (long long t = 0; rows >> t; ++n) {
     ASSERT_LT(n, expected.rows.size());
