@@ -178,12 +178,14 @@ void Spindle::watch_source(const image::ProcessImage& image) noexcept {
   lost_ = image.sources[static_cast<std::size_t>(config_.source)].quality >= image::Quality::stale;
 }
 
-/// A drive with a source that is gone or has tripped: nothing turns again unasked.
+/// A drive that is gone or has tripped: nothing turns again unasked, neither by its acknowledgement nor when
+/// it is back.
 void Spindle::give_up() noexcept {
-  if (config_.source < 0) return;
-  if (lost_ && !seen_lost_) events_.add({alarm::kSpindleDriveLost, ordered_rpm_, 0.0});
-  const bool fault = drive_.online && drive_.state == DriveState::fault;
-  if ((lost_ || fault) && mode_ != SpindleMode::stop) order(SpindleMode::stop, 0.0);
+  if (lost_ && !seen_lost_ && config_.source >= 0) events_.add({alarm::kSpindleDriveLost, ordered_rpm_, 0.0});
+  const bool fault = drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active;
+  const bool gone = config_.source >= 0 ? lost_ : std::exchange(was_online_, drive_.online) && !drive_.online;
+  if ((gone || (drive_.online && fault)) && mode_ != SpindleMode::stop && !config_.inverter)
+    order(SpindleMode::stop, 0.0);
 }
 
 /// From where the spindle stands to where it is to stand, degrees: the nearer way round, or all of a turn.

@@ -30,8 +30,8 @@ struct SpindleAngle {
 ///
 /// An inverter gives no feedback: at speed is its command, standstill its ramp. Speed and relays go to 0 at
 /// once with the reactions quick stop and power off, without MC.power_on, and when a station of theirs is
-/// lost; then the order is stop, and nothing turns again unasked. The same order is given when a drive with a
-/// source of its own is lost or in fault; whether that spindle stands is not known then.
+/// lost; then the order is stop, and nothing turns again unasked. The same order is given when a drive is
+/// lost or in fault, whatever it was told before; whether that spindle stands is not known then.
 ///
 /// S.limit of the PLC bounds the speed whatever is ordered (the chuck and the work in it), at once and by the
 /// ramp.
@@ -139,6 +139,7 @@ class Spindle {
   bool power_on_ = false;
   bool lost_ = false;         ///< an output of the inverter, or the source of the drive
   bool seen_lost_ = false;    ///< the same one cycle ago
+  bool was_online_ = false;   ///< its drive, one cycle ago
   bool turned_ = false;       ///< when its drive was last heard
   double not_ready_s_ = 0.0;  ///< wanted, and not switched on by what it says itself
   bool raised_ready_ = false;

@@ -438,5 +438,45 @@ TEST(Spindle, keeps_its_angle_exact_over_a_long_run) {
   }
 }
 
+TEST(Spindle, whose_drive_trips_does_not_turn_again_when_it_is_acknowledged) {
+  for (const SpindleMode told : {SpindleMode::cw, SpindleMode::ccw, SpindleMode::orient}) {
+    SpindleRig rig;
+    rig.spindle.order(SpindleMode::cw, 1000.0);
+    rig.run(800);
+    if (told != SpindleMode::cw) rig.spindle.order(told, 1000.0);
+    rig.fault = true;
+    rig.run(100);
+    rig.speed = 0.0;  // it has come to a stand
+    rig.run(100);
+    ASSERT_TRUE(rig.spindle.present(alarm::kSpindleDriveFault));
+    EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
+    rig.spindle.reset();
+    rig.fault = false;
+    const double before = rig.position;
+    for (int n = 0; n < 3000; ++n) {
+      rig.cycle();
+      ASSERT_FALSE(rig.image.spindles[0].drive_command.power) << "its drive is not even switched on";
+    }
+    EXPECT_EQ(rig.position, before);
+    rig.spindle.order(SpindleMode::cw, 500.0);
+    rig.run(1000);
+    EXPECT_TRUE(rig.spindle.at_speed()) << "it turns when it is told to again";
+  }
+}
+
+TEST(Spindle, whose_drive_goes_away_does_not_turn_again_when_it_is_back) {
+  SpindleRig rig;
+  rig.spindle.order(SpindleMode::cw, 1000.0);
+  rig.run(800);
+  rig.away = true;
+  rig.run(100);
+  EXPECT_EQ(rig.spindle.mode(), SpindleMode::stop);
+  rig.away = false;
+  rig.speed = 0.0;
+  const double before = rig.position;
+  rig.run(3000);
+  EXPECT_EQ(rig.position, before);
+}
+
 }  // namespace
 }  // namespace servogate::axis
