@@ -57,6 +57,7 @@ void Process::hold_way(const cycle::ProcessContext& c) noexcept {
   const image::Packets& k = c.image.packets;
   bool hold = !k.bit(at(kFeedEnable, base_));
   for (const OwnAxis& own : own_axes()) hold = hold || !c.axes[own.machine].feed_enabled();
+  hold = hold || out_of_step(c) != nullptr;
   if (hold)
     back_.hold();
   else

@@ -74,6 +74,41 @@ TEST(CoupledProgram, that_is_stopped_brings_both_spindles_down_and_leaves_no_cou
   }
 }
 
+TEST(CoupledProgram, goes_back_along_its_path_in_step_only) {
+  Coupled rig(kLong);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x() > 30.0; })) << rig.alarm_list();
+  ASSERT_EQ(rig.ask(RequestKind::hold), cycle::Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::held && !rig.moving(); }));
+  const auto function = [&](image::Function what, double value) {
+    image::Request r;
+    r.kind = RequestKind::function;
+    r.index = static_cast<std::uint32_t>(what);
+    r.value = value;
+    return rig.ask(r);
+  };
+  ASSERT_EQ(function(image::Function::spindle_stop, 0.0), cycle::Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return std::abs(rig.rpm(0)) < 1.0 && std::abs(rig.rpm(1)) < 1.0; }, 10.0));
+  rig.run(1.0);
+  ASSERT_EQ(function(image::Function::spindle_clockwise, 600.0), cycle::Refusal::none);
+  rig.run(0.05);
+  ASSERT_FALSE(rig.in_step());
+  int moves = 0, out_of_step = 0;
+  rig.each = [&] {
+    if (!rig.moving()) return;
+    ++moves;
+    if (!rig.in_step()) ++out_of_step;
+  };
+  image::Request back;
+  back.kind = RequestKind::retrace;
+  back.value = 10.0;
+  ASSERT_EQ(rig.ask(back), cycle::Refusal::none);
+  ASSERT_TRUE(rig.until([&] { return !rig.status().retracing && !rig.moving(); }, 60.0));
+  EXPECT_GT(moves, 100);
+  EXPECT_LE(out_of_step, 1) << "it comes into step in the cycle";
+  EXPECT_TRUE(rig.status().retraced);
+}
+
 TEST(CoupledProgram, that_an_alarm_stops_brings_both_spindles_down) {
   Coupled rig(kLong);
   rig.start();

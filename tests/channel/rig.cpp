@@ -53,9 +53,13 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
   }
   image::DriveFeedback& s = image.spindles[0].drive;
   s.online = true;
-  s.state = spindle_.power ? image::DriveState::operation_enabled : image::DriveState::switch_on_disabled;
-  const double told = spindle_.power ? spindle_.velocity_counts_s : 0.0;
+  s.state = spindle_fault    ? image::DriveState::fault
+            : spindle_.power ? image::DriveState::operation_enabled
+                             : image::DriveState::switch_on_disabled;
+  const double told = spindle_.power && !spindle_fault ? spindle_.velocity_counts_s : 0.0;
   if (!spindle_coasts) s.velocity_counts_s = spindle_one_way ? std::max(0.0, told) : told;
+  if (spindle_backwards) s.velocity_counts_s = -told;
+  if (spindle_stuck) s.velocity_counts_s = 0.0;
   s.missed = spindle_silent ? s.missed + 1 : 0;
   const double period = image.now.period_s(), was = turns;
   slipped_ += std::clamp(slip - slipped_, -0.002, 0.002);  // 10 % in 50 ms: it has inertia
@@ -75,7 +79,7 @@ void IdealDrives::second_spindle(image::ProcessImage& image) {
   image::DriveFeedback& s = image.spindles[1].drive;
   s.online = true;
   s.state = second_.power ? image::DriveState::operation_enabled : image::DriveState::switch_on_disabled;
-  s.velocity_counts_s = second_.power ? second_.velocity_counts_s : 0.0;
+  s.velocity_counts_s = second_.power && !second_stuck ? second_.velocity_counts_s : 0.0;
   const double was =
       std::exchange(second_turns_, second_turns_ + s.velocity_counts_s / 4096.0 * image.now.period_s());
   if (second_.latch_arm && s.latch_sequence == 0 && std::floor(second_turns_) != std::floor(was))

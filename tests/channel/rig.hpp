@@ -27,11 +27,15 @@ class IdealDrives final : public image::CycleDevice {
   void send(image::ProcessImage& image) noexcept override;
   std::array<bool, kAxes> fault{};  ///< falls out of Operation enabled
   std::array<bool, kAxes> stuck{};  ///< does not move any more, and says so
-  double slip = 0.0;             ///< share of its speed that the spindle loses under load, 0.2 % each cycle
-  bool spindle_silent = false;   ///< its readings do not come any more
-  bool spindle_coasts = false;   ///< it turns on as it does, whatever it is told
-  bool spindle_one_way = false;  ///< it stops, but does not turn counter-clockwise
-  double turns = 0.0;            ///< true revolutions of the spindle one period ago
+  double slip = 0.0;               ///< share of its speed that the spindle loses under load, 0.2 % each cycle
+  bool spindle_fault = false;      ///< its drive has tripped
+  bool spindle_stuck = false;      ///< it stands still, whatever it is told
+  bool spindle_backwards = false;  ///< it turns the other way round, whatever it is told
+  bool second_stuck = false;       ///< the second one stands still
+  bool spindle_silent = false;     ///< its readings do not come any more
+  bool spindle_coasts = false;     ///< it turns on as it does, whatever it is told
+  bool spindle_one_way = false;    ///< it stops, but does not turn counter-clockwise
+  double turns = 0.0;              ///< true revolutions of the spindle one period ago
   /// Of the probe to the part, mm: it is deflected from 0 down. Without it there is no part.
   std::function<double(const std::array<double, kAxes>&)> clearance;
   void surface_at(double z) {
