@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "tests/canopen_tools/workbench.hpp"
+#include "tests/one_processor.hpp"
 
 namespace servogate::canopen_tools {
 
@@ -14,6 +15,7 @@ class LockstepBench : public Workbench {
   /// its
   /// --plant.
   Ended on_drive(std::string line, const std::string& plant, const std::string& nodes = "5") {
+    const tests::OneProcessor pinned;  // server, drive and bench take turns
     const std::string at = std::to_string(++calls_);
     const std::string socket = path("lockstep-" + at);
     const std::string url = "lockstep:unix:" + socket + "/can0";
