@@ -87,6 +87,10 @@ bool holds_nothing(const Lexis& lexis, std::string_view line, std::size_t first)
 }
 
 void read_block(const Dialect& dialect, const AxisLetters& axes, std::string_view line, Block& block) {
+  if (!read_plain_block(dialect, axes, line, block)) read_any_block(dialect, axes, line, block);
+}
+
+void read_any_block(const Dialect& dialect, const AxisLetters& axes, std::string_view line, Block& block) {
   block.line = line;
   block.kind = BlockKind::empty;
   block.sync = Sync::standard;

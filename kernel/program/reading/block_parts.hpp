@@ -12,6 +12,12 @@ namespace servogate::program {
 inline bool name_character(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 /// Throws: `c` belongs to the prefix and does not stand in its order.
 [[noreturn]] void fail_prefix(const Dialect& dialect, int column, char c);
+/// A block of a number, at most one G word and words whose numbers are written out, each letter once, as
+/// read_any_block() would read it, only sooner. False: it is another one, or a wrong one; `block` means
+/// nothing then. Never throws.
+bool read_plain_block(const Dialect& dialect, const AxisLetters& axes, std::string_view line, Block& block);
+/// Every block, and what is wrong with one.
+void read_any_block(const Dialect& dialect, const AxisLetters& axes, std::string_view line, Block& block);
 /// Block number, label and the like in their fixed order; the body begins behind them.
 void read_prefix(const Dialect& dialect, std::string_view line, Block& block);
 /// The digit behind a skip mark, 0 where none stands; `pos` at the mark, moved behind both.
