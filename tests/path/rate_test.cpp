@@ -163,15 +163,23 @@ TEST(Rate, a_hold_or_a_lower_override_from_full_rate_is_settled_in_the_next_cycl
       ASSERT_FALSE(motion.changing());
       motion.step(d.view, wish, 0.001);
       EXPECT_TRUE(motion.changing()) << wish << " at " << at;
-      // What was settled and not begun: at its knot.
+      // What was settled and not begun: at its knot, or behind the place to which the law slows down.
+      const auto speed = [&] {
+        const Vector v = motion.point(d.view).v;
+        return std::hypot(v[0], v[1], v[2]);
+      };
       int cycles = 0;
-      while (motion.rate() == 1.0 && motion.step(d.view, wish, 0.001)) ++cycles;
-      EXPECT_LE(cycles, 17) << wish << " at " << at;
-      later += cycles > 1 ? 1 : 0;
+      for (double before = speed(), now; motion.rate() == 1.0 && motion.step(d.view, wish, 0.001);
+           before = now) {
+        now = speed();
+        cycles += now < before ? 0 : 1;
+      }
+      EXPECT_LE(cycles, wish == 0.0 ? 100 : 17) << wish << " at " << at;
+      later += cycles > 17 ? 1 : 0;
       ++holds;
     }
   }
-  std::printf("%d of %d began at the knot of the next known stop\n", later, holds);
+  std::printf("%d of %d began behind a slow place\n", later, holds);
 }
 
 TEST(Rate, a_hold_during_a_change_is_on_its_way_within_a_hundred_and_sixty_cycles) {

@@ -101,6 +101,7 @@ bool Interval::take(const CourseView& view, std::int64_t m, const RateLimits& li
   const double seconds = k3->t.since(k2->t);
   if (k3->kind == Knot::Kind::straight) {
     tau_ = {seconds, 1.0, 0.0, 0.0, 0.0, 0.0};
+    even_ = true;
     bend_ = third_ = {};
     for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
       start_[i] = (k0->control[i] + 4.0 * k1->control[i] + k2->control[i]) / 6.0;
@@ -110,6 +111,7 @@ bool Interval::take(const CourseView& view, std::int64_t m, const RateLimits& li
     return true;
   }
   tau_ = Quintic::between(seconds, k2->w, k2->a, k3->w, k3->a);
+  even_ = false;
   for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
     const double p0 = k0->control[i], p1 = k1->control[i], p2 = k2->control[i], p3 = k3->control[i];
     start_[i] = (p0 + 4.0 * p1 + p2) / 6.0;
@@ -119,6 +121,17 @@ bool Interval::take(const CourseView& view, std::int64_t m, const RateLimits& li
   }
   turn(limits);
   return true;
+}
+
+Interval::Along Interval::along(const Vector& direction, int axes) const noexcept {
+  Along out{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    out.start += direction[i] * start_[i];
+    out.slope += direction[i] * slope_[i];
+    out.bend += direction[i] * bend_[i];
+    out.third += direction[i] * third_[i];
+  }
+  return out;
 }
 
 CoursePoint Interval::at(double in, double rate, double slope, int axes) const noexcept {
@@ -213,13 +226,16 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
     before_ = place.knot();
     last_ = t_;
     if (t_ < change_.seconds) continue;
-    if (change_.r1 == 0.0 || view.end() >= 0) return Fit::fits;
-    // Who does not come to rest must reach the last stop that is known.
-    const StopHint guard = view.guard();
-    const Knot* stop = view.knot(guard.knot);
-    if (guard.knot < 0 || stop == nullptr) return Fit::unpublished;
-    return stop->t.since(at) >= change_.r1 * beyond_ ? Fit::fits : Fit::unpublished;
+    return reaches_stop(view, at, change_.r1, beyond_) ? Fit::fits : Fit::unpublished;
   }
+}
+
+/// Who does not come to rest must reach the last stop that is known.
+bool reaches_stop(const CourseView& view, const LawTime& at, double r1, double beyond) noexcept {
+  if (r1 == 0.0 || view.end() >= 0) return true;
+  const StopHint guard = view.guard();
+  const Knot* stop = view.knot(guard.knot);
+  return guard.knot >= 0 && stop != nullptr && stop->t.since(at) >= r1 * beyond;
 }
 
 CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "kernel/path/law/knot.hpp"
+#include "kernel/path/law/s_curve.hpp"
 
 namespace servogate::path {
 
@@ -101,12 +102,23 @@ class Interval {
   bool keeps(double in, const RateState& rate, const RateLimits& limits) const noexcept;
   /// The course `in` seconds behind its begin, with velocity and acceleration at this rate.
   CoursePoint at(double in, double rate, double slope, int axes) const noexcept;
+  /// The spline's place along a direction of the axes, and its derivatives, at the interval's begin.
+  struct Along {
+    double start, slope, bend, third;
+    double at(double f) const noexcept { return start + f * (slope + f * (0.5 * bend + f * third / 6.0)); }
+  };
+  Along along(const Vector& direction, int axes) const noexcept;
+  /// The spline's parameter by law time, 0 to 1.
+  const Quintic& tau() const noexcept { return tau_; }
+  /// A straight at constant speed.
+  bool even() const noexcept { return even_; }
 
  private:
   void turn(const RateLimits& limits) noexcept;
   std::int64_t m_ = 0;
   LawTime begin_;
   Quintic tau_{};
+  bool even_ = false;
   double place_ = 0.0, way_ = 0.0;
   Vector start_{}, slope_{}, bend_{}, third_{};  // of the spline at its begin, on the axes
 };
@@ -141,6 +153,63 @@ class Verification {
   double t_ = 0.0, last_ = 0.0, beyond_ = 0.0;
 };
 
+/// A change that ends at `at` in the rate r1 leaves `beyond` seconds at that rate before the last stop that
+/// is known. real-time safe.
+bool reaches_stop(const CourseView& view, const LawTime& at, double r1, double beyond) noexcept;
+
+/// The early branch of a course: where its path is straight, or hardly bent, the speed along it goes by
+/// constant jerk at the limits of the axes, whatever the law does there, and law time follows from the place.
+/// Everything here is real-time safe.
+class StraightRamp {
+ public:
+  /// The state of a motion on the course.
+  struct From {
+    LawTime time;
+    std::int64_t knot = 1;
+    double rate = 1.0, slope = 0.0;
+  };
+  /// The way to `target` times the law's speed, or to rest where that is the other way round, by `share` of
+  /// the limits. False: the path is bent, the motion would turn round, or too little is published.
+  bool plan(const CourseView& view, const RateLimits& limits, const From& from, double target, double share,
+            int& places) noexcept;
+  /// Whether it keeps all limits to its end. Counts the places down that it looks at, and stops at 0.
+  Fit verify(const CourseView& view, const RateLimits& limits, int& places) noexcept;
+  /// Goes to `t` seconds from its start, 0 <= t <= seconds(); false: that is not published.
+  bool go(const CourseView& view, const RateLimits& limits, double t) noexcept;
+
+  double seconds() const noexcept { return profile_.duration(); }
+  bool to_rest() const noexcept { return profile_.end().v == 0.0; }
+  /// The law's speed is constant where it ends: the rate holds from there on.
+  bool ends_even() const noexcept { return ends_even_; }
+  /// Where it has gone; `passed` is not told.
+  const RateState& state() const noexcept { return state_; }
+  LawTime time() const noexcept;
+  std::int64_t knot() const noexcept { return interval_.knot(); }
+
+ private:
+  void take_along(int axes) noexcept { along_ = interval_.along(direction_, axes); }
+  bool take(const CourseView& view, std::int64_t m, const RateLimits& limits) noexcept;
+  bool step_on(const CourseView& view, const RateLimits& limits, bool forwards) noexcept;
+  bool move_to(const CourseView& view, const RateLimits& limits, double s, int* places) noexcept;
+  bool look(const MotionState& motion, double jerk) noexcept;
+  double fastest_ahead(const CourseView& view, const RateLimits& limits, int& places) noexcept;
+  bool ends_straight(const RateLimits& limits) const noexcept;
+  bool keeps_to(const CourseView& view, const RateLimits& limits, double t, int& places) noexcept;
+  MotionState motion(double t) const noexcept;
+  double next_place(double t, double step) const noexcept;
+
+  Vector direction_{};     ///< of the axes, where law time goes forwards
+  double origin_ = 0.0;    ///< place along it where the ramp begins
+  double forwards_ = 1.0;  ///< -1: backwards
+  Profile profile_;        ///< of the speed, seen in the direction of the motion
+  Interval interval_;
+  Interval::Along along_{};
+  double in_ = 0.0;  ///< law time since the interval's begin
+  double t_ = 0.0;   ///< the last place
+  RateState state_;
+  bool ends_even_ = false;
+};
+
 /// The course at rest at a law time; `near`: number of a knot near it. real-time safe.
 CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near,
                      const RateLimits& limits) noexcept;
@@ -170,7 +239,8 @@ class RateMotion {
   double rate() const noexcept { return rate_; }
   const LawTime& time() const noexcept { return time_; }
   std::int64_t knot() const noexcept { return knot_; }
-  /// A change is on its way, or settled: it begins in the knot of a stop that is known, a few ahead.
+  /// A change is on its way, or settled: it begins in the knot of a stop that is known, a few ahead, or
+  /// where the law has slowed down before a corner.
   bool changing() const noexcept { return active_ || settled_; }
   bool at_rest() const noexcept { return !active_ && rate_ == 0.0; }
   /// A change is on its way.
@@ -184,8 +254,14 @@ class RateMotion {
   int places() const noexcept { return kMostPlaces - left_; }
 
  private:
-  void advance(double period) noexcept;
+  void advance(const CourseView& view, double period) noexcept;
+  void advance_on_ramp(const CourseView& view, double period) noexcept;
   void start(const RateChange& change) noexcept;
+  bool ramp(const CourseView& view, double target, double period) noexcept;
+  bool ramp_ahead(const CourseView& view, const StopHint& hint) noexcept;
+  bool start_ramp_ahead(const CourseView& view, double target, double period) noexcept;
+  bool early(const CourseView& view, double target, const StopHint& hint, double period) noexcept;
+  bool follow_ramp(const CourseView& view, double target, double period, int& places) noexcept;
   Fit enter(const CourseView& view, double target, double seconds, int power, double period) noexcept;
   bool stop_at(const CourseView& view, const StopHint& hint, double period) noexcept;
   double until(const CourseView& view, const StopHint& hint) const noexcept;
@@ -199,15 +275,23 @@ class RateMotion {
   void seek(const CourseView& view, double target, double period) noexcept;
   void surge(const CourseView& view, double target, double period) noexcept;
   void put_off(const CourseView& view, double period) noexcept;
-  bool come_back(double period) noexcept;
+  bool come_back(const CourseView& view, double period) noexcept;
 
   RateLimits limits_;
   LawTime time_;
   std::int64_t knot_ = 1;
-  double rate_ = 1.0;
+  double rate_ = 1.0, slope_ = 0.0;
   RateChange change_;
-  double into_ = 0.0;  ///< the change, s
-  bool active_ = false, starving_ = false, settled_ = false, stuck_ = false;
+  StraightRamp ramp_;          ///< goes before the change
+  std::int64_t ramp_at_ = -1;  ///< the ramp begins in this knot
+  struct Ahead {
+    int cycles = 0, looked = 0, behind = 0;  ///< knots that were looked at, and those behind the slowest one
+    std::int64_t knot = 1;
+    double slowest = 0.0;
+  };
+  Ahead ahead_;        ///< the search for a knot where it may begin
+  double into_ = 0.0;  ///< the ramp, or the change, s
+  bool active_ = false, on_ramp_ = false, starving_ = false, settled_ = false, stuck_ = false;
   double searched_for_ = 2.0;  ///< target of the search
   double next_ = 0.0;          ///< length to try next
   double share_ = 1.0;         ///< of the target, where not enough is published for all of it

@@ -21,7 +21,8 @@ void RateMotion::begin(double rate) noexcept {
   rate_ = rate;
 }
 
-void RateMotion::advance(double period) noexcept {
+void RateMotion::advance(const CourseView& view, double period) noexcept {
+  if (on_ramp_) return advance_on_ramp(view, period);
   if (!active_) {
     time_ = time_.plus(rate_ * period);
     return;
@@ -31,24 +32,27 @@ void RateMotion::advance(double period) noexcept {
   const RateState now = change_.at(into_);
   time_ = time_.plus(now.passed - before);
   rate_ = now.rate;
+  slope_ = now.slope;
   if (into_ < change_.seconds) return;
   active_ = false;
   rate_ = change_.r1;
+  slope_ = 0.0;
 }
 
 void RateMotion::start(const RateChange& change) noexcept {
   change_ = change;
   into_ = 0.0;
   active_ = true;
+  on_ramp_ = false;
+  ramp_at_ = -1;
   open_ = stuck_ = creeping_ = levels_ = false;
   if (change.r1 != 0.0) starving_ = false;
 }
 
 Fit RateMotion::enter(const CourseView& view, double target, double seconds, int power,
                       double period) noexcept {
-  const double slope = active_ ? change_.at(into_).slope : 0.0;
   left_ -= kTry;
-  verification_.begin({rate_, slope, target, seconds, power}, time_, knot_, period);
+  verification_.begin({rate_, slope_, target, seconds, power}, time_, knot_, period);
   const Fit fit = verification_.go(view, limits_, left_);
   if (fit == Fit::fits) start(verification_.change());
   return fit;
@@ -68,14 +72,16 @@ bool RateMotion::stop_at(const CourseView& view, const StopHint& hint, double pe
   if (in < 0.0 || in > period) return false;
   time_ = view.knot(hint.knot)->t;
   start({rate_, 0.0, 0.0, hint.seconds / rate_, hint.power});
-  advance(period - in);
+  advance(view, period - in);
   return true;
 }
 
 bool RateMotion::stop_in_time(const CourseView& view, double target, double period) noexcept {
   settled_ = false;
   if (active_) return false;
-  if (target >= 0.0 && target < rate_) {
+  if (start_ramp_ahead(view, target, period)) return true;
+  settled_ = ramp_at_ >= 0;
+  if (!settled_ && target >= 0.0 && target < rate_) {
     const StopHint hint = view.stop_near(knot_);
     if (stop_at(view, hint, period)) return true;
     settled_ = until(view, hint) > 0.0;
@@ -103,10 +109,9 @@ bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double 
 /// Instead of speeding up any further, a constant rate soon: from there what is wanted is found.
 bool RateMotion::level_off(const CourseView& view, double period) noexcept {
   constexpr double kLengths[] = {0.04, 0.06, 0.1}, kMore = 0.3;
-  const double slope = change_.at(into_).slope;
   for (const double seconds : kLengths) {
     if (left_ <= 0) return false;
-    levels_ = enter(view, std::min(1.0, rate_ + kMore * slope * seconds), seconds, 3, period) == Fit::fits;
+    levels_ = enter(view, std::min(1.0, rate_ + kMore * slope_ * seconds), seconds, 3, period) == Fit::fits;
     if (levels_) return true;
   }
   return false;
@@ -128,6 +133,11 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     searched_for_ = target;
     anew();
     open_ = shorter_ = false;
+    ahead_ = {};
+    ramp_at_ = -1;
+    if (early(view, target, hint, period)) return;
+  } else if (early(view, target, hint, period)) {
+    return;
   } else if (active_ && !levels_ && target < rate_ && change_.r1 > rate_ && level_off(view, period)) {
     return;
   }
@@ -197,7 +207,7 @@ void RateMotion::put_off(const CourseView& view, double period) noexcept {
 }
 
 /// The way back from above 1 begins in this cycle.
-bool RateMotion::come_back(double period) noexcept {
+bool RateMotion::come_back(const CourseView& view, double period) noexcept {
   if (active_ || rate_ <= 1.0) return false;
   if (back_in_ >= period) {
     back_in_ -= period;
@@ -206,7 +216,7 @@ bool RateMotion::come_back(double period) noexcept {
   const double until = back_in_;
   time_ = time_.plus(rate_ * until);
   start(back_);
-  advance(period - until);
+  advance(view, period - until);
   return true;
 }
 
@@ -265,7 +275,7 @@ void RateMotion::seek(const CourseView& view, double target, double period) noex
 bool RateMotion::step(const CourseView& view, double target, double period) noexcept {
   left_ = kMostPlaces;
   seek(view, target, period);
-  if (!come_back(period) && !stop_in_time(view, target, period)) advance(period);
+  if (!come_back(view, period) && !stop_in_time(view, target, period)) advance(view, period);
   const bool there = rests_there(view);
   CoursePlace place(view);
   place.set_knot(knot_);
@@ -280,8 +290,7 @@ bool RateMotion::step(const CourseView& view, double target, double period) noex
 CoursePoint RateMotion::point(const CourseView& view) const noexcept {
   Interval interval;
   if (!interval.take(view, knot_, limits_)) return {};
-  return interval.at(time_.since(interval.begin()), rate_, active_ ? change_.at(into_).slope : 0.0,
-                     limits_.axes);
+  return interval.at(time_.since(interval.begin()), rate_, slope_, limits_.axes);
 }
 
 }  // namespace servogate::path

@@ -110,9 +110,7 @@ void Profile::add(double duration, double jerk) noexcept {
 
 MotionState Profile::at(double t) const noexcept {
   if (t >= duration_ || count_ == 0) return end_;
-  int k = count_ - 1;
-  while (k > 0 && t < phases_[k].begins) --k;
-  const Phase& p = phases_[k];
+  const Phase& p = phases_[phase(t)];
   const MotionState& f = p.from;
   const double u = t - p.begins;
   return {f.s + u * (f.v + u * (0.5 * f.a + u * p.jerk / 6.0)), f.v + u * (f.a + 0.5 * u * p.jerk),

@@ -23,6 +23,12 @@ class Profile {
   void finish_at(const MotionState& state) noexcept { end_ = state; }
   /// State `t` seconds after the start (0 <= t; the end state from duration() on).
   MotionState at(double t) const noexcept;
+  /// Jerk `t` seconds after the start; 0 behind the last phase.
+  double jerk(double t) const noexcept {
+    return t >= duration_ || count_ == 0 ? 0.0 : phases_[phase(t)].jerk;
+  }
+  /// When a phase begins, 0 <= n < size().
+  double begins(int n) const noexcept { return phases_[static_cast<std::size_t>(n)].begins; }
   double duration() const noexcept { return duration_; }
   /// State after the last phase.
   const MotionState& end() const noexcept { return end_; }
@@ -33,6 +39,12 @@ class Profile {
     MotionState from;
     double begins, jerk;
   };
+  /// Number of the one that `t` lies in; one there must be.
+  std::size_t phase(double t) const noexcept {
+    auto k = static_cast<std::size_t>(count_ - 1);
+    while (k > 0 && t < phases_[k].begins) --k;
+    return k;
+  }
   std::array<Phase, kMaxPhases> phases_{};
   int count_ = 0;
   double duration_ = 0.0;

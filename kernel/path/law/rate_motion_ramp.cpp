@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernel/path/law/rate.hpp"
+
+namespace servogate::path {
+
+void RateMotion::advance_on_ramp(const CourseView& view, double period) noexcept {
+  into_ += period;
+  const double beyond = into_ - ramp_.seconds();
+  ramp_.go(view, limits_, std::min(into_, ramp_.seconds()));  // published, as it was verified
+  time_ = ramp_.time();
+  knot_ = ramp_.knot();
+  rate_ = ramp_.state().rate;
+  slope_ = ramp_.state().slope;
+  if (beyond < 0.0) return;
+  on_ramp_ = false;
+  if (!ramp_.to_rest() && !ramp_.ends_even()) {
+    into_ = 0.0;
+    return advance(view, beyond);
+  }
+  active_ = false;
+  rate_ = change_.r1;
+  slope_ = 0.0;
+  advance(view, beyond);
+}
+
+/// What brings the rate from the end of the ramp to the one that is wanted.
+bool RateMotion::follow_ramp(const CourseView& view, double target, double period, int& places) noexcept {
+  constexpr double kLengths[] = {RateChange::kShortest, 0.08};
+  const RateState end = ramp_.state();
+  for (const double seconds : kLengths) {
+    change_ = {end.rate, end.slope, target, seconds, 3};
+    Verification way;
+    way.begin(change_, ramp_.time(), ramp_.knot(), period);
+    if (way.go(view, limits_, places) == Fit::fits) return true;
+  }
+  return false;
+}
+
+/// The early way, where the path is straight. By a little less than the limits also where it is hardly bent.
+bool RateMotion::ramp(const CourseView& view, double target, double period) noexcept {
+  constexpr double kShares[] = {0.9995, 0.99, 0.95, 0.8}, kLittle = 0.1;
+  constexpr int kPlaces = 700;
+  int places = std::min(left_, kPlaces);
+  left_ -= places;
+  const StraightRamp now = ramp_;
+  const RateChange then = change_;
+  bool fits = false;
+  for (const double share : kShares) {
+    if (places <= 0 || !ramp_.plan(view, limits_, {time_, knot_, rate_, slope_}, target, share, places))
+      break;
+    const bool rests = ramp_.to_rest(), even = ramp_.ends_even();
+    if (!rests && !even && std::abs(target - rate_) < kLittle) break;
+    if (ramp_.verify(view, limits_, places) != Fit::fits) continue;
+    change_ = {rate_, slope_, rests ? 0.0 : target, ramp_.seconds(), 3};
+    fits = rests || (even ? reaches_stop(view, ramp_.time(), target, period)
+                          : follow_ramp(view, target, period, places));
+    if (fits) break;
+  }
+  left_ += places;
+  if (!fits) {
+    ramp_ = now;
+    change_ = then;
+    return false;
+  }
+  start(change_);
+  on_ramp_ = true;
+  return true;
+}
+
+/// The law slows down, before a corner, and leaves no room to slow down any sooner: the stop that begins in
+/// a knot ahead, where there is room again. For a hold, in its first cycles.
+bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexcept {
+  constexpr double kShare = 0.95, kSlower = 0.9;
+  constexpr int kMostKnots = 150, kNear = 3, kBehind = 24, kPlaces = 300, kCycles = 4;
+  if (ramp_at_ >= 0) return true;
+  if (active_ || !(rate_ > 0.0 && rate_ <= 1.0) || ahead_.cycles >= kCycles) return false;
+  const double speed_now = std::abs(point(view).speed) / rate_;
+  if (ahead_.cycles++ == 0) ahead_ = {1, 0, 0, knot_, speed_now};
+  const double least = hint.knot < 0 ? std::numeric_limits<double>::infinity()
+                                     : std::max(0.0, until(view, hint)) + hint.seconds / rate_;
+  for (; ahead_.looked < kMostKnots; ++ahead_.looked, ahead_.knot = next_of(view, ahead_.knot)) {
+    // The next cycle goes on before a corner; elsewhere there are other ways to stop.
+    if (left_ < kPlaces) return ahead_.slowest < kSlower * speed_now;
+    Interval interval;
+    --left_;
+    if (!interval.take(view, ahead_.knot, limits_)) break;
+    const double speed = interval.at(interval.seconds(), 1.0, 0.0, limits_.axes).speed;
+    if (speed < ahead_.slowest) {
+      ahead_.slowest = speed;
+      if (ahead_.looked >= kNear) continue;
+    } else if (++ahead_.behind > kBehind) {
+      break;
+    }
+    const LawTime at = view.knot(ahead_.knot)->t;
+    int places = kPlaces;
+    left_ -= places;
+    const bool fits = at.since(time_) >= 0.0 &&
+                      ramp_.plan(view, limits_, {at, ahead_.knot, rate_, 0.0}, 0.0, kShare, places) &&
+                      at.since(time_) / rate_ + ramp_.seconds() < least &&
+                      ramp_.verify(view, limits_, places) == Fit::fits;
+    left_ += places;
+    if (!fits) continue;
+    ramp_at_ = ahead_.knot;
+    return true;
+  }
+  ahead_.cycles = kCycles;
+  return false;
+}
+
+/// Its knot may be reached in this cycle.
+bool RateMotion::start_ramp_ahead(const CourseView& view, double target, double period) noexcept {
+  if (ramp_at_ < 0) return false;
+  const Knot* knot = view.knot(ramp_at_);
+  if (target != 0.0 || knot == nullptr) {
+    ramp_at_ = -1;
+    return false;
+  }
+  const double in = std::max(0.0, knot->t.since(time_) / rate_);
+  if (in > period) return false;
+  time_ = knot->t;
+  start({rate_, 0.0, 0.0, ramp_.seconds(), 3});
+  on_ramp_ = true;
+  advance(view, period - in);
+  return true;
+}
+
+/// What slows down, or speeds up, at once as fast as the axes can.
+bool RateMotion::early(const CourseView& view, double target, const StopHint& hint, double period) noexcept {
+  if (on_ramp_ && ramp_.to_rest() && target * rate_ < 0.0) return true;  // rests first, to turn round
+  return ramp(view, target, period) || (target == 0.0 && ramp_ahead(view, hint));
+}
+
+}  // namespace servogate::path
