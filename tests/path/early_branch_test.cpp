@@ -64,20 +64,20 @@ struct Machine : DrivenPath {
 
 TEST(EarlyBranch, holds_on_a_line_in_the_least_time_while_it_speeds_up_cruises_and_slows_down) {
   for (const double turns : {0.0, 10.0}) {
-    int speeding = 0, slowing = 0;
-    for (int at = 20, step = 61;; at += step) {
+    int speeding = 0, slowing = 0, holds = 0;
+    for (int at = 20, step = 31;; at += step) {
       Machine m(lines(0, 30), turns);
       for (int k = 0; k < at; ++k) m.step();
       const double v = m.last.velocity[0], a = m.last.acceleration[0];
       const double way = m.last.position[0];
-      step = std::abs(way - (kLine - 65)) < 6 ? 17 : 61;
+      step = std::abs(way - (kLine - 66)) < 16 ? 17 : way < 25 ? 31 : 211;
       if (m.fastest(0.0).end().s > kLine - 0.5) break;  // its stop would lead into the corner
       speeding += a > 50.0 ? 1 : 0;
       slowing += a < -50.0 ? 1 : 0;
       const int least = m.least_cycles(0.0);
       EXPECT_LE(m.hold_cycles(), least + 1) << "at " << way << " mm, " << v << " mm/s, " << a << " mm/s2";
       EXPECT_LT(m.last.position[0], kLine);
-      m.expect_to_end(0, 30);
+      if (holds++ % 4 == 0) m.expect_to_end(0, 30);
     }
     EXPECT_GE(speeding, 3);
     EXPECT_GE(slowing, 1);

@@ -6,6 +6,33 @@
 #include "kernel/path/law/rate.hpp"
 
 namespace servogate::path {
+namespace {
+
+/// From here on, or from a little ahead, the path is a line for some knots; elsewhere the other ways to stop
+/// are as good.
+bool line_near(const CourseView& view, const RateLimits& limits, std::int64_t m) noexcept {
+  constexpr int kApart = 12;
+  constexpr double kAside = 2.5e-3;  // square of a direction
+  Vector before{};
+  for (int n = 0; n <= 3 * kApart; ++n, m = next_of(view, m)) {
+    if (n % kApart != 0) continue;
+    Interval interval;
+    if (!interval.take(view, m, limits)) return false;
+    const Vector v = interval.at(interval.seconds(), 1.0, 0.0, limits.axes).v;
+    double size = 0.0, aside = 0.0;
+    for (const double x : v) size += x * x;
+    if (!(size > 0.0)) return false;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const double x = v[i] / std::sqrt(size), d = x - before[i];
+      aside += d * d;
+      before[i] = x;
+    }
+    if (n > 0 && aside < kAside) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 void RateMotion::advance_on_ramp(const CourseView& view, double period) noexcept {
   into_ += period;
@@ -43,15 +70,15 @@ bool RateMotion::follow_ramp(const CourseView& view, double target, double perio
 /// The early way, where the path is straight. By a little less than the limits also where it is hardly bent.
 bool RateMotion::ramp(const CourseView& view, double target, double period) noexcept {
   constexpr double kShares[] = {0.9995, 0.99, 0.95, 0.8}, kLittle = 0.1;
-  constexpr int kPlaces = 700;
+  constexpr int kPlaces = 700, kKnots = 300;  // to look at, and to pass until the end is known to be straight
   int places = std::min(left_, kPlaces);
   left_ -= places;
   const StraightRamp now = ramp_;
   const RateChange then = change_;
   bool fits = false;
   for (const double share : kShares) {
-    if (places <= 0 || !ramp_.plan(view, limits_, {time_, knot_, rate_, slope_}, target, share, places))
-      break;
+    int knots = kKnots;
+    if (places <= 0 || !ramp_.plan(view, limits_, {time_, knot_, rate_, slope_}, target, share, knots)) break;
     const bool rests = ramp_.to_rest(), even = ramp_.ends_even();
     if (!rests && !even && std::abs(target - rate_) < kLittle) break;
     if (ramp_.verify(view, limits_, places) != Fit::fits) continue;
@@ -79,7 +106,13 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
   if (ramp_at_ >= 0) return true;
   if (active_ || !(rate_ > 0.0 && rate_ <= 1.0) || ahead_.cycles >= kCycles) return false;
   const double speed_now = std::abs(point(view).speed) / rate_;
-  if (ahead_.cycles++ == 0) ahead_ = {1, 0, 0, knot_, speed_now};
+  if (ahead_.cycles++ == 0) {
+    if (!line_near(view, limits_, knot_)) {
+      ahead_.cycles = kCycles;
+      return false;
+    }
+    ahead_ = {1, 0, 0, knot_, speed_now};
+  }
   const double least = hint.knot < 0 ? std::numeric_limits<double>::infinity()
                                      : std::max(0.0, until(view, hint)) + hint.seconds / rate_;
   for (; ahead_.looked < kMostKnots; ++ahead_.looked, ahead_.knot = next_of(view, ahead_.knot)) {
