@@ -160,9 +160,10 @@ bool Interval::keeps(double in, const RateState& rate, const RateLimits& limits)
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
     const AxisLimits& l = limits.limits[i];
     const double y2 = bend_[i] + f * third_[i], y1 = slope_[i] + f * (bend_[i] + 0.5 * f * third_[i]);
-    if (std::abs(y1 * v) > l.velocity) return false;
-    if (std::abs(y2 * v * v + y1 * a) > kShare * l.acceleration) return false;
-    if (std::abs(third_[i] * v * v * v + 3.0 * y2 * v * a + y1 * j) > kShare * l.jerk) return false;
+    // What is no number keeps none.
+    if (!(std::abs(y1 * v) <= l.velocity)) return false;
+    if (!(std::abs(y2 * v * v + y1 * a) <= kShare * l.acceleration)) return false;
+    if (!(std::abs(third_[i] * v * v * v + 3.0 * y2 * v * a + y1 * j) <= kShare * l.jerk)) return false;
   }
   return true;
 }
@@ -230,12 +231,13 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
   }
 }
 
-/// Who does not come to rest must reach the last stop that is known.
+/// Who does not come to rest must reach the last stop that is known, and not be at it already by rounding.
 bool reaches_stop(const CourseView& view, const LawTime& at, double r1, double beyond) noexcept {
+  constexpr double kMore = 1.01;
   if (r1 == 0.0 || view.end() >= 0) return true;
   const StopHint guard = view.guard();
   const Knot* stop = view.knot(guard.knot);
-  return guard.knot >= 0 && stop != nullptr && stop->t.since(at) >= r1 * beyond;
+  return guard.knot >= 0 && stop != nullptr && stop->t.since(at) >= kMore * r1 * beyond;
 }
 
 CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near,

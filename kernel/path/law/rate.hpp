@@ -153,15 +153,17 @@ class Verification {
   double t_ = 0.0, last_ = 0.0, beyond_ = 0.0;
 };
 
-/// A change that ends at `at` in the rate r1 leaves `beyond` seconds at that rate before the last stop that
-/// is known. real-time safe.
+/// A change that ends at `at` in the rate r1 leaves `beyond` seconds at that rate, and a little more, before
+/// the last stop that is known. real-time safe.
 bool reaches_stop(const CourseView& view, const LawTime& at, double r1, double beyond) noexcept;
 
 /// The early branch of a course: where its path is straight, or hardly bent, the speed along it goes by
 /// constant jerk at the limits of the axes, whatever the law does there, and law time follows from the place.
+/// On the way the rate may be up to kAbove beyond 1: the law leaves a reserve that the ramp need not leave.
 /// Everything here is real-time safe.
 class StraightRamp {
  public:
+  static constexpr double kAbove = 6e-3;
   /// The state of a motion on the course.
   struct From {
     LawTime time;
@@ -169,17 +171,20 @@ class StraightRamp {
     double rate = 1.0, slope = 0.0;
   };
   /// The way to `target` times the law's speed, or to rest where that is the other way round, by `share` of
-  /// the limits. False: the path is bent, the motion would turn round, or too little is published.
+  /// the limits. False: the path is bent, the motion would turn round, too little is published, or more
+  /// knots would be passed than `places`, which it counts down.
   bool plan(const CourseView& view, const RateLimits& limits, const From& from, double target, double share,
             int& places) noexcept;
   /// Whether it keeps all limits to its end. Counts the places down that it looks at, and stops at 0.
   Fit verify(const CourseView& view, const RateLimits& limits, int& places) noexcept;
+  /// Back to its start. False: that is not published any more.
+  bool rewind(const CourseView& view, const RateLimits& limits) noexcept;
   /// Goes to `t` seconds from its start, 0 <= t <= seconds(); false: that is not published.
   bool go(const CourseView& view, const RateLimits& limits, double t) noexcept;
 
   double seconds() const noexcept { return profile_.duration(); }
   bool to_rest() const noexcept { return profile_.end().v == 0.0; }
-  /// The law's speed is constant where it ends: the rate holds from there on.
+  /// It ends in the rate that is wanted, where the law's speed is constant: the rate holds from there on.
   bool ends_even() const noexcept { return ends_even_; }
   /// Where it has gone; `passed` is not told.
   const RateState& state() const noexcept { return state_; }
@@ -193,7 +198,10 @@ class StraightRamp {
   bool move_to(const CourseView& view, const RateLimits& limits, double s, int* places) noexcept;
   bool look(const MotionState& motion, double jerk) noexcept;
   double fastest_ahead(const CourseView& view, const RateLimits& limits, int& places) noexcept;
-  bool ends_straight(const RateLimits& limits) const noexcept;
+  bool begins_straight(const RateLimits& limits, const CoursePoint& law, double rate) noexcept;
+  bool straight_at(double in, const RateLimits& limits) const noexcept;
+  bool aim(const CourseView& view, const RateLimits& limits, const MotionState& now, double wanted,
+           const Box& box, int& places) noexcept;
   bool keeps_to(const CourseView& view, const RateLimits& limits, double t, int& places) noexcept;
   MotionState motion(double t) const noexcept;
   double next_place(double t, double step) const noexcept;
@@ -204,8 +212,12 @@ class StraightRamp {
   Profile profile_;        ///< of the speed, seen in the direction of the motion
   Interval interval_;
   Interval::Along along_{};
-  double in_ = 0.0;  ///< law time since the interval's begin
-  double t_ = 0.0;   ///< the last place
+  double in_ = 0.0;         ///< law time since the interval's begin
+  double t_ = 0.0;          ///< the last place
+  std::int64_t first_ = 1;  ///< knot that ends the interval where it begins
+  double first_in_ = 0.0;   ///< and the law time in there
+  double turns_ = 0.0;      ///< when the speed goes the other way, s; 0: it does not
+  double fastest_ = 0.0;    ///< speed on the way
   RateState state_;
   bool ends_even_ = false;
 };
@@ -225,6 +237,7 @@ StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& be
 class RateMotion {
  public:
   static constexpr int kMostPlaces = 1000;  // a cycle
+  static constexpr int kTry = 6;            // that a try counts for by itself
 
   explicit RateMotion(const RateLimits& limits) noexcept : limits_(limits) {}
   /// At the start of a course, which rests there: any rate is at once.
@@ -236,6 +249,7 @@ class RateMotion {
   /// its start backwards, or to where it rests if it is broken.
   bool step(const CourseView& view, double target, double period) noexcept;
   CoursePoint point(const CourseView& view) const noexcept;
+  /// -1 to 1, or above 1 where that is wanted; on a ramp up to StraightRamp::kAbove beyond.
   double rate() const noexcept { return rate_; }
   const LawTime& time() const noexcept { return time_; }
   std::int64_t knot() const noexcept { return knot_; }
@@ -250,7 +264,7 @@ class RateMotion {
   double wanted() const noexcept {
     return !active_ ? rate_ : change_.way != 0.0 ? searched_for_ : change_.r1;
   }
-  /// Looked at in the last cycle.
+  /// Looked at in the last cycle, and knots that were passed to plan a ramp.
   int places() const noexcept { return kMostPlaces - left_; }
 
  private:
@@ -259,7 +273,8 @@ class RateMotion {
   void start(const RateChange& change) noexcept;
   bool ramp(const CourseView& view, double target, double period) noexcept;
   bool ramp_ahead(const CourseView& view, const StopHint& hint) noexcept;
-  bool start_ramp_ahead(const CourseView& view, double target, double period) noexcept;
+  void forget_ramps(double target) noexcept;
+  bool start_ramp_ahead(const CourseView& view, double period) noexcept;
   bool early(const CourseView& view, double target, const StopHint& hint, double period) noexcept;
   bool follow_ramp(const CourseView& view, double target, double period, int& places) noexcept;
   Fit enter(const CourseView& view, double target, double seconds, int power, double period) noexcept;
@@ -283,6 +298,7 @@ class RateMotion {
   double rate_ = 1.0, slope_ = 0.0;
   RateChange change_;
   StraightRamp ramp_;          ///< goes before the change
+  bool ramp_tried_ = false;    ///< in the cycle before, in vain
   std::int64_t ramp_at_ = -1;  ///< the ramp begins in this knot
   struct Ahead {
     int cycles = 0, looked = 0, behind = 0;  ///< knots that were looked at, and those behind the slowest one

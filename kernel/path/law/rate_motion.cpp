@@ -8,7 +8,6 @@
 namespace servogate::path {
 namespace {
 
-constexpr int kTry = 6;  // places that a try counts for by itself
 constexpr double kLeastShare = 0.03, kOfStop = 0.6;
 constexpr double kShortest = RateChange::kShortest;
 constexpr double kSameTime = 2e-12;  // s
@@ -79,7 +78,7 @@ bool RateMotion::stop_at(const CourseView& view, const StopHint& hint, double pe
 bool RateMotion::stop_in_time(const CourseView& view, double target, double period) noexcept {
   settled_ = false;
   if (active_) return false;
-  if (start_ramp_ahead(view, target, period)) return true;
+  if (start_ramp_ahead(view, period)) return true;
   settled_ = ramp_at_ >= 0;
   if (!settled_ && target >= 0.0 && target < rate_) {
     const StopHint hint = view.stop_near(knot_);
@@ -132,9 +131,7 @@ void RateMotion::search(const CourseView& view, double target, double period) no
   if (searched_for_ != target) {
     searched_for_ = target;
     anew();
-    open_ = shorter_ = false;
-    ahead_ = {};
-    ramp_at_ = -1;
+    open_ = shorter_ = ramp_tried_ = false;
     if (early(view, target, hint, period)) return;
   } else if (early(view, target, hint, period)) {
     return;
@@ -274,6 +271,7 @@ void RateMotion::seek(const CourseView& view, double target, double period) noex
 
 bool RateMotion::step(const CourseView& view, double target, double period) noexcept {
   left_ = kMostPlaces;
+  forget_ramps(target);
   seek(view, target, period);
   if (!come_back(view, period) && !stop_in_time(view, target, period)) advance(view, period);
   const bool there = rests_there(view);

@@ -37,7 +37,14 @@ bool line_near(const CourseView& view, const RateLimits& limits, std::int64_t m)
 void RateMotion::advance_on_ramp(const CourseView& view, double period) noexcept {
   into_ += period;
   const double beyond = into_ - ramp_.seconds();
-  ramp_.go(view, limits_, std::min(into_, ramp_.seconds()));  // published, as it was verified
+  if (!ramp_.go(view, limits_, std::min(into_, ramp_.seconds()))) {
+    // What was verified is published: a view that takes it back is left at the present rate, and the search
+    // for what is wanted begins anew.
+    on_ramp_ = active_ = false;
+    rate_ = std::clamp(rate_, -1.0, 1.0);
+    slope_ = 0.0;
+    return advance(view, period);
+  }
   time_ = ramp_.time();
   knot_ = ramp_.knot();
   rate_ = ramp_.state().rate;
@@ -70,15 +77,16 @@ bool RateMotion::follow_ramp(const CourseView& view, double target, double perio
 /// The early way, where the path is straight. By a little less than the limits also where it is hardly bent.
 bool RateMotion::ramp(const CourseView& view, double target, double period) noexcept {
   constexpr double kShares[] = {0.9995, 0.99, 0.95, 0.8}, kLittle = 0.1;
-  constexpr int kPlaces = 700, kKnots = 300;  // to look at, and to pass until the end is known to be straight
+  constexpr int kPlaces = 700;
   int places = std::min(left_, kPlaces);
   left_ -= places;
   const StraightRamp now = ramp_;
   const RateChange then = change_;
   bool fits = false;
   for (const double share : kShares) {
-    int knots = kKnots;
-    if (places <= 0 || !ramp_.plan(view, limits_, {time_, knot_, rate_, slope_}, target, share, knots)) break;
+    left_ -= kTry;
+    if (places <= 0 || !ramp_.plan(view, limits_, {time_, knot_, rate_, slope_}, target, share, places))
+      break;
     const bool rests = ramp_.to_rest(), even = ramp_.ends_even();
     if (!rests && !even && std::abs(target - rate_) < kLittle) break;
     if (ramp_.verify(view, limits_, places) != Fit::fits) continue;
@@ -88,7 +96,7 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
     if (fits) break;
   }
   left_ += places;
-  if (!fits) {
+  if (!fits || !ramp_.rewind(view, limits_)) {
     ramp_ = now;
     change_ = then;
     return false;
@@ -107,6 +115,7 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
   if (active_ || !(rate_ > 0.0 && rate_ <= 1.0) || ahead_.cycles >= kCycles) return false;
   const double speed_now = std::abs(point(view).speed) / rate_;
   if (ahead_.cycles++ == 0) {
+    left_ -= kTry;
     if (!line_near(view, limits_, knot_)) {
       ahead_.cycles = kCycles;
       return false;
@@ -137,6 +146,7 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
                       ramp_.verify(view, limits_, places) == Fit::fits;
     left_ += places;
     if (!fits) continue;
+    if (!ramp_.rewind(view, limits_)) break;
     ramp_at_ = ahead_.knot;
     return true;
   }
@@ -144,11 +154,20 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
   return false;
 }
 
+/// What is looked for ahead is of no use where nothing is to rest, or is about to; a wish that is new is
+/// tried at once.
+void RateMotion::forget_ramps(double target) noexcept {
+  if (target == wanted()) ramp_tried_ = false;
+  if (target == 0.0 && wanted() != 0.0) return;
+  ahead_ = {};
+  ramp_at_ = -1;
+}
+
 /// Its knot may be reached in this cycle.
-bool RateMotion::start_ramp_ahead(const CourseView& view, double target, double period) noexcept {
+bool RateMotion::start_ramp_ahead(const CourseView& view, double period) noexcept {
   if (ramp_at_ < 0) return false;
   const Knot* knot = view.knot(ramp_at_);
-  if (target != 0.0 || knot == nullptr) {
+  if (knot == nullptr) {
     ramp_at_ = -1;
     return false;
   }
@@ -161,10 +180,13 @@ bool RateMotion::start_ramp_ahead(const CourseView& view, double target, double 
   return true;
 }
 
-/// What slows down, or speeds up, at once as fast as the axes can.
+/// What slows down, or speeds up, at once as fast as the axes can. Where that was in vain, each other cycle
+/// belongs to the search, which may need all of its places.
 bool RateMotion::early(const CourseView& view, double target, const StopHint& hint, double period) noexcept {
   if (on_ramp_ && ramp_.to_rest() && target * rate_ < 0.0) return true;  // rests first, to turn round
-  return ramp(view, target, period) || (target == 0.0 && ramp_ahead(view, hint));
+  ramp_tried_ = !ramp_tried_;
+  if (ramp_tried_ && ramp(view, target, period)) return true;
+  return target == 0.0 && ramp_ahead(view, hint);
 }
 
 }  // namespace servogate::path

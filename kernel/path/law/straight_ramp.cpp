@@ -9,13 +9,12 @@ namespace servogate::path {
 namespace {
 
 constexpr double kPlace = 0.001;  // s between places; in ramps of half a second twice as far, of one thrice
-constexpr int kMostPlaces = 400;  // longer ramps are looked at further apart
-constexpr double kBent = 0.3;     // of a direction: no straight
-constexpr double kSlow = 1e-3;    // mm/s of the law: it rests, or nearly
-constexpr double kSame = 1e-12;   // mm
+constexpr double kBent = 0.3;     // of a direction, or of an axis' acceleration: no straight
+constexpr double kSameRate = 1e-10;
+constexpr double kSlow = 1e-3;         // mm/s of the law: it rests, or nearly
+constexpr double kSame = 1e-12;        // mm
 constexpr double kBesideBreak = 1e-9;  // s from where the jerk changes
-constexpr double kAbove = 6e-3;  // of a rate, beside what it changes between: the law leaves the reserve
-constexpr int kRounds = 60;      // of a place's search
+constexpr int kRounds = 60;            // of a place's search
 
 double length(const Vector& v, int axes) {
   double square = 0.0;
@@ -75,7 +74,8 @@ bool StraightRamp::step_on(const CourseView& view, const RateLimits& limits, boo
   return take(view, forwards ? next_of(view, interval_.knot()) : begin, limits);
 }
 
-/// The place in the interval where it lies.
+/// The interval where the place lies, and where in it. With `places`, to plan: they are counted down by the
+/// knots that are passed, and the way there has to be straight.
 bool StraightRamp::move_to(const CourseView& view, const RateLimits& limits, double s, int* places) noexcept {
   const std::int64_t from = interval_.knot();
   bool on = false, back = false;
@@ -83,7 +83,8 @@ bool StraightRamp::move_to(const CourseView& view, const RateLimits& limits, dou
     const bool forwards = s > along_.at(1.0);
     (forwards ? on : back) = true;
     if (!step_on(view, limits, forwards)) return false;
-    if (places != nullptr && --*places <= 0) return false;
+    if (places == nullptr) continue;
+    if (--*places <= 0 || !straight_at(forwards ? 0.0 : interval_.seconds(), limits)) return false;
   }
   const Quintic& tau = interval_.tau();
   const double guess = interval_.knot() == from ? in_ / tau.seconds : 0.5;
@@ -104,7 +105,7 @@ bool StraightRamp::look(const MotionState& motion, double jerk) noexcept {
   return true;
 }
 
-/// The law's greatest speed in the direction of the motion, up to where it is constant.
+/// The law's greatest speed in the direction of the motion, up to where it is constant or the path bends.
 double StraightRamp::fastest_ahead(const CourseView& view, const RateLimits& limits, int& places) noexcept {
   constexpr int kMostKnots = 160;
   const Interval here = interval_;
@@ -113,15 +114,16 @@ double StraightRamp::fastest_ahead(const CourseView& view, const RateLimits& lim
     const double z = forwards_ > 0.0 ? 1.0 : 0.0;
     most =
         std::max(most, (along_.slope + z * (along_.bend + 0.5 * z * along_.third)) * interval_.tau().d1(z));
-    if (interval_.even() || !step_on(view, limits, forwards_ > 0.0)) break;
+    if (interval_.even() || !straight_at(z * interval_.seconds(), limits)) break;
+    if (!step_on(view, limits, forwards_ > 0.0)) break;
   }
   interval_ = here;
   take_along(limits.axes);
   return most;
 }
 
-bool StraightRamp::ends_straight(const RateLimits& limits) const noexcept {
-  const Vector v = interval_.at(in_, 1.0, 0.0, limits.axes).v;
+bool StraightRamp::straight_at(double in, const RateLimits& limits) const noexcept {
+  const Vector v = interval_.at(in, 1.0, 0.0, limits.axes).v;
   double along = 0.0, aside = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) along += v[i] * direction_[i];
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
@@ -131,15 +133,8 @@ bool StraightRamp::ends_straight(const RateLimits& limits) const noexcept {
   return along > kSlow && std::sqrt(aside) <= kBent * along;
 }
 
-bool StraightRamp::plan(const CourseView& view, const RateLimits& limits, const From& from, double target,
-                        double share, int& places) noexcept {
-  constexpr int kRoundsOfSpeed = 3;
-  constexpr double kSameSpeed = 1e-9;  // of a speed
-  forwards_ = from.rate < 0.0 || (from.rate == 0.0 && target < 0.0) ? -1.0 : 1.0;
-  if (!interval_.take(view, from.knot, limits)) return false;
-  in_ = from.time.since(interval_.begin());
-  if (in_ < 0.0 || in_ > interval_.seconds()) return false;
-  const CoursePoint law = interval_.at(in_, 1.0, 0.0, limits.axes);
+/// Takes direction and place; false: the law rests, or the bend takes much of an axis.
+bool StraightRamp::begins_straight(const RateLimits& limits, const CoursePoint& law, double rate) noexcept {
   const double speed = length(law.v, limits.axes);
   if (!(speed > kSlow)) return false;
   double acceleration = 0.0;
@@ -149,32 +144,65 @@ bool StraightRamp::plan(const CourseView& view, const RateLimits& limits, const 
     acceleration += direction_[i] * law.a[i];
     origin_ += direction_[i] * law.x[i];
   }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
+    const double aside = (law.a[i] - acceleration * direction_[i]) * rate * rate;
+    if (!(std::abs(aside) <= kBent * limits.limits[i].acceleration)) return false;
+  }
+  return true;
+}
+
+/// The profile to `wanted` times the law's speed where it ends.
+bool StraightRamp::aim(const CourseView& view, const RateLimits& limits, const MotionState& now,
+                       double wanted, const Box& box, int& places) noexcept {
+  constexpr int kRounds = 3;
+  double v1 = wanted > 0.0 ? wanted * fastest_ahead(view, limits, places) : 0.0;
+  if (wanted > 0.0 && !(v1 > 0.0)) return false;
+  for (int n = 0; n < kRounds; ++n) {
+    profile_.start(now);
+    add_ramp(profile_, now.v, now.a, v1, box);
+    const MotionState end = motion(profile_.duration());
+    if (!move_to(view, limits, end.s, &places) || !straight_at(in_, limits) || !look(end, 0.0)) return false;
+    const double off = wanted - std::abs(state_.rate);
+    ends_even_ = interval_.even() && std::abs(off) <= kSameRate;
+    if (wanted == 0.0 || std::abs(off) <= kSameRate) break;
+    if (n + 1 < kRounds) v1 *= wanted / std::abs(state_.rate);
+  }
+  return true;
+}
+
+bool StraightRamp::plan(const CourseView& view, const RateLimits& limits, const From& from, double target,
+                        double share, int& places) noexcept {
+  forwards_ = from.rate < 0.0 || (from.rate == 0.0 && target < 0.0) ? -1.0 : 1.0;
+  if (!interval_.take(view, from.knot, limits)) return false;
+  in_ = from.time.since(interval_.begin());
+  if (!(in_ >= 0.0 && in_ <= interval_.seconds())) return false;
+  const CoursePoint law = interval_.at(in_, 1.0, 0.0, limits.axes);
+  if (!begins_straight(limits, law, from.rate)) return false;
   take_along(limits.axes);
+  double speed = 0.0, acceleration = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
+    speed += direction_[i] * law.v[i];
+    acceleration += direction_[i] * law.a[i];
+  }
   const Box box = box_along(direction_, limits, share);
   const MotionState now{0.0, forwards_ * from.rate * speed,
                         forwards_ * (acceleration * from.rate * from.rate + speed * from.slope)};
-  if (now.v < 0.0 || now.v + 0.5 * now.a * std::abs(now.a) / box.jerk < 0.0) return false;
-  const Interval here = interval_;
-  const double in = in_;
-  const double wanted = std::max(0.0, forwards_ * target);
-  double v1 = wanted > 0.0 ? wanted * fastest_ahead(view, limits, places) : 0.0;
-  if (wanted > 0.0 && v1 <= 0.0) return false;
-  for (int n = 0; n < kRoundsOfSpeed; ++n) {
-    profile_.start(now);
-    add_ramp(profile_, now.v, now.a, v1, box);
-    if (!move_to(view, limits, motion(profile_.duration()).s, &places) || !ends_straight(limits))
-      return false;
-    if (wanted == 0.0 || !look(motion(profile_.duration()), 0.0)) break;
-    const double better = v1 * wanted / std::abs(state_.rate);
-    if (std::abs(better - v1) <= kSameSpeed * v1) break;
-    v1 = better;
-  }
-  ends_even_ = interval_.even();
-  interval_ = here;
-  in_ = in;
-  take_along(limits.axes);
+  const double natural = now.v + 0.5 * now.a * std::abs(now.a) / box.jerk;
+  if (!(now.v >= 0.0 && natural >= 0.0)) return false;
+  first_ = from.knot;
+  first_in_ = in_;
+  if (!aim(view, limits, now, std::max(0.0, forwards_ * target), box, places)) return false;
+  const double jerk = profile_.jerk(0.0);
+  turns_ = jerk * now.a < 0.0 ? -now.a / jerk : 0.0;
+  fastest_ = std::max({now.v, natural, profile_.end().v});
+  return rewind(view, limits) && profile_.duration() > 0.0;
+}
+
+bool StraightRamp::rewind(const CourseView& view, const RateLimits& limits) noexcept {
+  if (!take(view, first_, limits)) return false;
+  in_ = first_in_;
   t_ = 0.0;
-  return profile_.duration() > 0.0;
+  return true;
 }
 
 bool StraightRamp::go(const CourseView& view, const RateLimits& limits, double t) noexcept {
@@ -207,9 +235,17 @@ bool StraightRamp::keeps_to(const CourseView& view, const RateLimits& limits, do
   return keeps_at(t);
 }
 
-/// Where it is looked at next, at the latest behind `step`: both sides of where the jerk changes.
+/// Where it is looked at next, at the latest behind `step`: both sides of where the jerk changes, and where
+/// the speed is at its greatest or least. While the law's speed is constant nothing else is needed: there the
+/// acceleration goes straight from one to the next.
 double StraightRamp::next_place(double t, double step) const noexcept {
+  if (interval_.even() && fastest_ > 0.0) {
+    const double s = motion(t).s;
+    const double left = forwards_ > 0.0 ? along_.at(1.0) - s : s - along_.at(0.0);
+    step = std::max(step, left / fastest_);
+  }
   double to = std::min(t + step, profile_.duration());
+  if (turns_ > t) to = std::min(to, turns_);
   for (int n = 1; n < profile_.size(); ++n)
     for (const double side : {-kBesideBreak, kBesideBreak})
       if (profile_.begins(n) + side > t) to = std::min(to, profile_.begins(n) + side);
@@ -218,15 +254,14 @@ double StraightRamp::next_place(double t, double step) const noexcept {
 
 Fit StraightRamp::verify(const CourseView& view, const RateLimits& limits, int& places) noexcept {
   const double whole = profile_.duration();
-  const double wider = whole > 1.0 ? 3.0 : whole > 0.5 ? 2.0 : 1.0;
-  const double step = std::max(wider * kPlace, whole / kMostPlaces);
+  const double step = (whole > 1.0 ? 3.0 : whole > 0.5 ? 2.0 : 1.0) * kPlace;
   double most = 1.0;
   for (double t = 0.0;; t = next_place(t, step)) {
     if (places <= 0) return Fit::open;
     if (!keeps_to(view, limits, t, places)) return Fit::breaks;
     const double rate = std::abs(state_.rate);
     if (t == 0.0) most = std::max(most, rate);
-    if (rate > most + kAbove) return Fit::breaks;
+    if (!(rate <= most + kAbove)) return Fit::breaks;
     if (t >= whole) return Fit::fits;
   }
 }
