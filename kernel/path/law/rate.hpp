@@ -175,7 +175,8 @@ class StraightRamp {
   /// knots would be passed than `places`, which it counts down.
   bool plan(const CourseView& view, const RateLimits& limits, const From& from, double target, double share,
             int& places) noexcept;
-  /// Whether it keeps all limits to its end. Counts the places down that it looks at, and stops at 0.
+  /// Whether it keeps all limits to its end. Counts the places down that it looks at, one between knots for
+  /// two, and stops at 0.
   Fit verify(const CourseView& view, const RateLimits& limits, int& places) noexcept;
   /// Back to its start. False: that is not published any more.
   bool rewind(const CourseView& view, const RateLimits& limits) noexcept;

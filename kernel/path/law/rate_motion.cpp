@@ -108,6 +108,7 @@ bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double 
 /// Instead of speeding up any further, a constant rate soon: from there what is wanted is found.
 bool RateMotion::level_off(const CourseView& view, double period) noexcept {
   constexpr double kLengths[] = {0.04, 0.06, 0.1}, kMore = 0.3;
+  if (!(rate_ > 0.0)) return false;  // it would turn round
   for (const double seconds : kLengths) {
     if (left_ <= 0) return false;
     levels_ = enter(view, std::min(1.0, rate_ + kMore * slope_ * seconds), seconds, 3, period) == Fit::fits;
@@ -135,7 +136,7 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     if (early(view, target, hint, period)) return;
   } else if (early(view, target, hint, period)) {
     return;
-  } else if (active_ && !levels_ && target < rate_ && change_.r1 > rate_ && level_off(view, period)) {
+  } else if (active_ && !levels_ && target < rate_ && slope_ > 0.0 && level_off(view, period)) {
     return;
   }
   if (!open_) share_ = 1.0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernel/path/law/rate.hpp"
 
@@ -77,9 +78,7 @@ bool RateMotion::follow_ramp(const CourseView& view, double target, double perio
 /// The early way, where the path is straight. By a little less than the limits also where it is hardly bent.
 bool RateMotion::ramp(const CourseView& view, double target, double period) noexcept {
   constexpr double kShares[] = {0.9995, 0.99, 0.95, 0.8}, kLittle = 0.1;
-  constexpr int kPlaces = 700;
-  int places = std::min(left_, kPlaces);
-  left_ -= places;
+  int places = std::exchange(left_, 0);
   const StraightRamp now = ramp_;
   const RateChange then = change_;
   bool fits = false;
@@ -110,7 +109,7 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
 /// a knot ahead, where there is room again. For a hold, in its first cycles.
 bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexcept {
   constexpr double kShare = 0.95, kSlower = 0.9;
-  constexpr int kMostKnots = 150, kNear = 3, kBehind = 24, kPlaces = 300, kCycles = 4;
+  constexpr int kMostKnots = 150, kNear = 3, kBehind = 24, kPlaces = 450, kCycles = 6;
   if (ramp_at_ >= 0) return true;
   if (active_ || !(rate_ > 0.0 && rate_ <= 1.0) || ahead_.cycles >= kCycles) return false;
   const double speed_now = std::abs(point(view).speed) / rate_;

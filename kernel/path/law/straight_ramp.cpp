@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kPlace = 0.001;  // s between places; in ramps of half a second twice as far, of one thrice
 constexpr double kBent = 0.3;     // of a direction, or of an axis' acceleration: no straight
+constexpr int kSolve = 1;         // looks that take as long as to find the place
 constexpr double kSameRate = 1e-10;
 constexpr double kSlow = 1e-3;         // mm/s of the law: it rests, or nearly
 constexpr double kSame = 1e-12;        // mm
@@ -231,6 +232,7 @@ bool StraightRamp::keeps_to(const CourseView& view, const RateLimits& limits, do
   }
   const Quintic& tau = interval_.tau();
   in_ = solve(along_, tau, s1, in_ / tau.seconds) * tau.seconds;
+  places -= kSolve;
   t_ = t;
   return keeps_at(t);
 }

@@ -46,6 +46,7 @@ class Rig {
     else
       follower_.resume();
     follower_.set_override(r.override_ratio);
+    follower_.set_spindle(r.turns);
     if (r.release) follower_.release_stop();
     return follower_.step(r.visible);
   }
@@ -54,8 +55,15 @@ class Rig {
     if (s.overrides && chance(0.01))
       r.override_ratio = chance(0.1) ? 0.0 : chance(0.2) ? 1.0 : uniform(0.02, 1.5);
     if (s.holds && chance(r.hold ? 0.02 : 0.005)) r.hold = !r.hold;
+    if (s.spindle) turn(r);
     const std::uint64_t there = track_.visible();
     r.visible = s.late && !chance(0.2) ? std::min(there, r.visible + (chance(0.05) ? 1 : 0)) : there;
+  }
+
+  void turn(Record& r) {
+    constexpr double kRamp = 0.02, kMost = 1.2 * Scenario::kTurns;
+    if (chance(0.004)) wanted_turns_ = chance(0.1) ? 0.0 : uniform(0.05 * kMost, kMost);
+    r.turns = r.turns < 0.0 ? wanted_turns_ : r.turns + std::clamp(wanted_turns_ - r.turns, -kRamp, kRamp);
   }
 
   Trip go(const Scenario& s, int most_cycles) {
@@ -71,7 +79,7 @@ class Rig {
       if (disturbed)
         disturb(s, r);
       else
-        r = {track_.visible(), 1.0, false, r.release};
+        r = {track_.visible(), 1.0, s.spindle ? Scenario::kTurns : -1.0, false, r.release};
       out.samples.push_back(step(r));
       out.record.push_back(r);
       r.release = out.samples.back().state == FollowerState::at_stop && (!disturbed || chance(0.2));
@@ -109,6 +117,7 @@ class Rig {
   Planner planner_;
   Follower follower_;
   std::mt19937_64 random_;
+  double wanted_turns_ = Scenario::kTurns;
   Sample first_;
   std::size_t next_ = 0;
   bool finished_ = false, flawed_ = false;

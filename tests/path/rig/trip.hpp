@@ -12,18 +12,21 @@ namespace servogate::path::test {
 
 /// What happens to a program while it runs, at cycles drawn from `seed`.
 struct Scenario {
+  static constexpr double kTurns = 10.0;  ///< revolutions/s that feeds per revolution are planned for
   std::uint64_t seed = 1;
   bool overrides = false;  ///< the override jumps, 0 included
   bool holds = false;      ///< hold and resume
   bool starving = false;   ///< planning is pulled at random cycles only, a few elements at a time
   bool late = false;       ///< the follower sees only part of what is published
   int disturbed = 3000;    ///< cycles after which all is left alone, at override 1
+  bool spindle = false;    ///< it goes from speed to speed, up to 1.2 times kTurns, and rests at times
 };
 
 /// What crosses the real-time line in one cycle, as a record keeps it.
 struct Record {
   std::uint64_t visible = 0;
   double override_ratio = 1.0;
+  double turns = -1.0;  ///< of the spindle, revolutions/s; below 0: none
   bool hold = false, release = false;
 };
 
