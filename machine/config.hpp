@@ -184,12 +184,14 @@ struct SpindleConfig {
   double gear_change_timeout = 5.0;  ///< s to the confirmation of a gear, then an alarm
   double encoder_delay = 0.0;        ///< s by which its counts are older than those of the drives
   Direction direction = Direction::plus;
-  double at_speed_window = 5.0;        ///< per cent
-  double at_speed_timeout = 10.0;      ///< s from the ramp's end to an alarm, 0: none
-  double orient_angle = 0.0;           ///< degrees, oriented stop
-  double orient_speed = 60.0;          ///< rpm
-  Coupling coupling = Coupling::none;  ///< by what it follows the first spindle of its process
-  double coupling_window = 2.0;        ///< degrees off; beyond: alarm
+  double at_speed_window = 5.0;                   ///< per cent
+  double at_speed_timeout = 10.0;                 ///< s from the ramp's end to an alarm, 0: none
+  double orient_angle = 0.0;                      ///< degrees, oriented stop
+  double orient_speed = 60.0;                     ///< rpm
+  Coupling coupling = Coupling::none;             ///< by what it follows the first spindle of its process
+  double coupling_window = 2.0;                   ///< degrees off; beyond: alarm
+  std::string axis;                               ///< letter of the rotary axis that it becomes; empty: none
+  std::array<std::int64_t, 2> axis_m = {70, 71};  ///< M functions: it becomes that axis : a spindle again
   bool has_encoder() const { return counts_per_rev > 0; }
   /// The gear by which its supplier is told: the only one, or the first of `gears`.
   const std::array<std::int64_t, 2>& first_gear() const { return gears.empty() ? gear : gears.front().gear; }

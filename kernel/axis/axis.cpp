@@ -28,11 +28,15 @@ void Axis::read(image::ProcessImage& image) noexcept {
   events_.clear();
   image::AxisImage& shared = image.axes[static_cast<std::size_t>(index_)];
   read_places(image);
-  read_feedback(shared.drive, image.now.period_s());
-  read_edges(image);
-  supervise_drive();
-  supervise_position();
-  supervise_switches();
+  if (asleep_) {
+    drive_ = shared.drive;
+  } else {
+    read_feedback(shared.drive, image.now.period_s());
+    read_edges(image);
+    supervise_drive();
+    supervise_position();
+    supervise_switches();
+  }
   shared.actual = actual_;
   shared.following_error = following_error_;
   shared.limit_plus = limit_plus_;
@@ -48,6 +52,8 @@ void Axis::set_process(const Setpoint& setpoint) noexcept {
 
 void Axis::command(image::ProcessImage& image) noexcept {
   const double dt = image.now.period_s();
+  if (reaction_ >= Reaction::stop_and_power_off) power_requested_ = false;
+  if (asleep_) return write_image(image, {});
   if (!process_given_) process_.bound = false;
   PowerSequence::Outputs power;
   step_power(dt, power);
@@ -76,10 +82,9 @@ void Axis::command(image::ProcessImage& image) noexcept {
 void Axis::step_power(double dt, PowerSequence::Outputs& out) noexcept {
   const PowerSequence::State before = power_.state();
   // Where a reaction takes the power anyway (emergency stop), the enable that goes with it says nothing new.
-  if (reaction_ >= Reaction::stop_and_power_off) power_requested_ = false;
   if (power_requested_ && !power_permitted_ && moving_) raise(alarm::kEnableWithdrawn, 0.0, set_.v);
   PowerSequence::Inputs in;
-  in.wanted = power_requested_ && power_permitted_;
+  in.wanted = power_requested_ && power_permitted_ && !lets_go_;
   // Beside a tap that goes with its spindle the other axes of its process are held, too.
   in.at_rest = held_ ? !moving_ && !process_.bound : actual_standing_;
   in.standing = actual_standing_;
@@ -359,7 +364,8 @@ void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs&
                                                                  : 0.0;
   out.owner = owner_;
   out.jog_end = jog_end_;
-  out.enabled = power_.motion_permitted();
+  // A spindle has its own power: nothing is missing to the axis that it may become.
+  out.enabled = asleep_ ? power_requested_ && power_permitted_ : power_.motion_permitted();
   out.homed = homed_;
   out.in_position = in_position_;
   out.moving = moving_;
@@ -371,7 +377,8 @@ void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs&
   auto put = [&](const image::Place& p, bool value) __attribute__((always_inline)) {
     image.packets.set_bit(image::at(p, base), value);  // a few instructions where the place is known
   };
-  put(field(kAxisFields, "enabled"), drive_.online && drive_.state == image::DriveState::operation_enabled);
+  const bool follows = !asleep_ && drive_.state == image::DriveState::operation_enabled;
+  put(field(kAxisFields, "enabled"), drive_.online && follows);
   put(field(kAxisFields, "homed"), homed_);
   put(field(kAxisFields, "in_position"), in_position_);
   put(field(kAxisFields, "moving"), moving_);

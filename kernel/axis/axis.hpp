@@ -143,6 +143,16 @@ class Axis {
   std::int64_t reference_counts() const noexcept { return scale_.reference_counts; }
   bool homed() const noexcept { return homed_; }
 
+  // -- the drive of a spindle
+  /// Its drive is a spindle's (kernel/axis/spindle_axis.cpp): the axis neither judges nor commands it, and
+  /// its set-point stays. Only without power. real-time safe.
+  void sleep() noexcept;
+  /// It has its drive again: these counts are the home position. It powers it where power is asked for.
+  void wake(std::int64_t reference_counts) noexcept;
+  bool asleep() const noexcept { return asleep_; }
+  /// Lets go of its drive, until the next wake(), whoever asks for power. real-time safe.
+  void let_go() noexcept { lets_go_ = true; }
+
   // -- state for channel, gate, reports
   bool motion_permitted() const noexcept { return power_.motion_permitted() && !stopped_by_reaction_; }
   /// The set-point moves or a motion is under way.
@@ -259,7 +269,8 @@ class Axis {
   double plus_free_s_ = 0.0, minus_free_s_ = 0.0;  ///< so long the switches have been free without a break
   bool met_plus_ = false, met_minus_ = false;      ///< they came on in this cycle, and not by bouncing
   bool homed_ = false;
-  bool own_motion_ = false;  ///< the ramp moves the axis, not the process
+  bool asleep_ = false, lets_go_ = false;  ///< its drive is a spindle's, or about to be
+  bool own_motion_ = false;                ///< the ramp moves the axis, not the process
   bool stopped_by_reaction_ = false;
   bool homing_reported_ = true;  ///< the end of the homing that was asked for
   bool held_ = false;            ///< the drive held the axis in the last cycle

@@ -42,6 +42,11 @@ void Spindle::order(SpindleMode mode, double rpm) noexcept {
   parting_ = link_.synchronous() || (parting_ && mode == SpindleMode::stop);
   link_.end();
   const bool analog = config_.inverter.has_value();
+  if (lent() && mode != SpindleMode::stop) {
+    cannot_ = alarm::kSpindleIsAxis;
+    return;
+  }
+  orient_deg_ = config_.orient_angle;
   const bool no_angle = mode == SpindleMode::orient && (analog || !config_.encoder);
   const bool no_relay = mode == SpindleMode::ccw && (analog ? !inverter_.reverses() : !config_.reverses);
   if (no_angle) cannot_ = alarm::kSpindleNoEncoder;
@@ -58,8 +63,8 @@ void Spindle::order(SpindleMode mode, double rpm) noexcept {
 }
 
 void Spindle::turn(double degrees, double rpm) noexcept {
-  if (link_.on()) {
-    cannot_ = alarm::kSpindleCoupled;
+  if (link_.on() || lent()) {
+    cannot_ = lent() ? alarm::kSpindleIsAxis : alarm::kSpindleCoupled;
     return;
   }
   const bool measures = !config_.inverter && config_.encoder;
@@ -191,7 +196,7 @@ void Spindle::give_up() noexcept {
 /// From where the spindle stands to where it is to stand, degrees: the nearer way round, or all of a turn.
 double Spindle::angle_error() const noexcept {
   if (mode_ == SpindleMode::turn) return 360.0 * (goal_turns_ - total_turns());
-  return wrapped(config_.orient_angle - angle_deg_);
+  return wrapped(orient_deg_ - angle_deg_);
 }
 
 /// Speed of the position loop that leads to an angle.
@@ -232,7 +237,8 @@ double Spindle::wanted_rpm() noexcept {
 }
 
 void Spindle::follow_drive(double wanted, double dt) noexcept {
-  const bool was_on = std::exchange(on_, drive_.online && drive_.state == DriveState::operation_enabled);
+  const bool enabled = drive_.online && drive_.state == DriveState::operation_enabled && !lent();
+  const bool was_on = std::exchange(on_, enabled);
   if (link_.on() && was_on && !on_) {
     // It would chase what it has lost as soon as its drive is acknowledged.
     const bool turns = std::max(std::abs(command_rpm_), std::abs(actual_rpm_)) > config_.zero_speed_rpm;
@@ -311,17 +317,23 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   out.running = mode_ != SpindleMode::stop || !zero_speed_;
   out.at_speed = at_speed_;
   leading_ = {};
-  if (!config_.inverter) write_drive(out);
+  if (!config_.inverter) write_drive(image, out);
   write_interface(image);
 }
 
-void Spindle::write_drive(image::SpindleImage& out) const noexcept {
+void Spindle::write_drive(image::ProcessImage& image, image::SpindleImage& out) const noexcept {
+  if (lent()) {
+    out.drive_command = image.axes[static_cast<std::size_t>(config_.axis)].drive_command;
+    out.drive_command.reset_fault = out.drive_command.reset_fault || reset_pending_;
+    return;
+  }
   // A drive in its quick stop brakes, too: without power it would coast.
   const bool holds = on_ || (drive_.online && drive_.state == DriveState::quick_stop_active);
   const bool needed =
       mode_ != SpindleMode::stop ? enable_ || !zero_speed_ : off_s_ < kPowerAfterStop && holds;
   image::DriveCommand& drive = out.drive_command;
-  drive.power = needed && reaction_ < Reaction::power_off;
+  drive.power = needed && reaction_ < Reaction::power_off && use_ != Use::freeing;
+  drive.brake_release = false;
   drive.quick_stop = reaction_ == Reaction::quick_stop;
   drive.reset_fault = reset_pending_;
   drive.mode = image::DriveMode::csv;
@@ -336,6 +348,7 @@ void Spindle::supervise(double dt, bool speed_due) noexcept {
   const bool fault = drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active;
   reset_left_s_ -= dt;
   if (!fault || reset_left_s_ <= 0.0) reset_pending_ = false;
+  if (fault && lent()) raised_fault_ = true;  // the axis says it
   if (fault && !reset_pending_ && drive_.online && !raised_fault_) {
     raised_fault_ = true;
     events_.add({alarm::kSpindleDriveFault, 0.0, static_cast<double>(drive_.error_code)});
@@ -357,7 +370,7 @@ void Spindle::supervise(double dt, bool speed_due) noexcept {
   }
   if (orient_due && config_.orient_timeout > 0.0 && wait_s_ > patience && !raised_orient_) {
     raised_orient_ = true;
-    const double wanted = config_.orient_angle;
+    const double wanted = orient_deg_;
     events_.add({alarm::kSpindleOrientTimeout,
                  mode_ == SpindleMode::turn ? 360.0 * (goal_turns_ - std::floor(goal_turns_)) : wanted,
                  angle_deg_});

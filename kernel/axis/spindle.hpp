@@ -14,6 +14,8 @@
 
 namespace servogate::axis {
 
+class Axis;
+
 enum class SpindleMode : std::uint8_t { stop, cw, ccw, orient, turn, follow };
 
 /// Where an encoder stands, as the master of a path.
@@ -46,6 +48,11 @@ struct SpindleAngle {
 /// follower ends the coupling: where it was in step it ramps as the leader would. In an emergency stop,
 /// without its enable and above S.limit each of them has its own ramp. A leader that rests, or whose drive is
 /// off at standstill, leads nowhere until it is told to turn, whoever moves it.
+///
+/// One with SpindleConfig::axis becomes a rotary axis when it is told to (want_axis()): it stops oriented
+/// where that axis stood last, its drive goes off, and comes on again in csp as the axis' own, which knows
+/// its place from the zero mark. Back it goes at rest: the axis lets go, and the spindle stands without an
+/// order. As an axis it takes no order to turn.
 class Spindle {
  public:
   /// `index` is the spindle's place in the image. Not for the cycle.
@@ -73,6 +80,17 @@ class Spindle {
   void lead(const Spindle& follower) noexcept;
   /// The leader, which has had its command() of this cycle; before the follower's own. real-time safe.
   void follow(const Spindle& leader, const image::CycleTime& now) noexcept;
+  /// It is to be the rotary axis of its configuration, or a spindle; see share(). real-time safe.
+  void want_axis(bool axis) noexcept { wants_axis_ = axis && config_.axis >= 0; }
+  bool wants_axis() const noexcept { return wants_axis_; }
+  /// It is the axis, at its place and under power.
+  bool is_axis() const noexcept { return use_ == Use::axis; }
+  /// It is a spindle, and on no way to anything else.
+  bool is_spindle() const noexcept { return use_ == Use::spindle; }
+  /// One cycle of the change between the two, before the command() of both. real-time safe.
+  void share(Axis& axis, double dt) noexcept;
+  /// Its drive as that of the axis, before both are read. real-time safe.
+  void show_drive(image::ProcessImage& image) const noexcept;
   /// Another speed of the mode in force, as often as is liked: what is waited for goes on. real-time safe.
   void adjust(double rpm) noexcept;
   SpindleMode mode() const noexcept { return mode_; }
@@ -99,6 +117,21 @@ class Spindle {
   double angle_deg() const noexcept { return angle_deg_; }
 
  private:
+  enum class Use : std::uint8_t {
+    spindle,
+    orienting,  ///< to the place of the axis
+    freeing,    ///< its drive goes off
+    powering,   ///< the axis has its drive, which comes on in csp
+    placing,    ///< the axis goes to its place, what the oriented stop is off
+    axis,
+    leaving,  ///< the axis lets its drive go
+  };
+  /// Its drive is the axis'.
+  bool lent() const noexcept { return use_ >= Use::powering; }
+  // spindle_axis.cpp
+  void begin_axis(const Axis& axis) noexcept;
+  void hand_over(Axis& axis) noexcept;
+  void give_up_axis(Axis& axis) noexcept;
   void follow_drive(double wanted, double dt) noexcept;
   // spindle_coupling.cpp
   void hold_to_angle(double dt) noexcept;
@@ -111,7 +144,7 @@ class Spindle {
   void part_from_leader() noexcept;
   void note_rest() noexcept;
   void follow_inverter(image::ProcessImage& image, double& wanted, double dt) noexcept;
-  void write_drive(image::SpindleImage& out) const noexcept;
+  void write_drive(image::ProcessImage& image, image::SpindleImage& out) const noexcept;
   void read_angle(const image::DriveFeedback& in, const image::CycleTime& now) noexcept;
   void watch_source(const image::ProcessImage& image) noexcept;
   void give_up() noexcept;
@@ -163,7 +196,13 @@ class Spindle {
   bool reset_pending_ = false;
   double reset_left_s_ = 0.0;
   bool raised_speed_ = false, raised_orient_ = false, raised_fault_ = false;
-  bool marked_ = false;  ///< the zero mark has been captured
+  bool marked_ = false;      ///< the zero mark has been captured
+  double orient_deg_ = 0.0;  ///< where an oriented stop leads
+
+  Use use_ = Use::spindle;
+  bool wants_axis_ = false;
+  double place_ = 0.0;       ///< of the axis, where it goes on
+  double changing_s_ = 0.0;  ///< so long it has been on its way
 
   Coupling link_;           ///< to the leader
   Led led_;                 ///< by it, in this cycle

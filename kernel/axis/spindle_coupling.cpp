@@ -37,6 +37,10 @@ double Spindle::ramp_rpm_s(double wanted) const noexcept {
 }
 
 void Spindle::couple(const CouplingOrder& order) noexcept {
+  if (lent()) {
+    cannot_ = alarm::kSpindleIsAxis;
+    return;
+  }
   link_.begin(order);
   mode_ = SpindleMode::follow;
   ordered_rpm_ = 0.0;

@@ -34,6 +34,8 @@ enum class EventKind : std::uint8_t {
   /// Spindle `number` follows the first, `code2` of its turns for `code`, `angle` ahead; without `flag` no
   /// more
   spindle_coupling,
+  /// The first spindle becomes its rotary axis, with `flag`; without it a spindle again
+  spindle_axis,
   warning,  ///< at once: the control does something otherwise than the program asks
   error,    ///< the interpreter found an error in the next block
   end,      ///< M02, M30 or the last line

@@ -37,7 +37,7 @@ program::OperatorSwitches switches_of(const image::Packets& packets, int process
 /// What was cut before it is not what the machine would cut now.
 bool bars(EventKind kind) {
   return kind == EventKind::tool || kind == EventKind::spindle || kind == EventKind::m_function ||
-         kind == EventKind::h_function || kind == EventKind::feed_override;
+         kind == EventKind::h_function || kind == EventKind::feed_override || kind == EventKind::spindle_axis;
 }
 
 bool stops(const program::Command& command) {
@@ -191,6 +191,7 @@ void Feeder::begin(const FeederOrder& order) {
     touch_.emplace(*std::exchange(touch_order_, std::nullopt), position_);
     touches_.put(generation_, *touch_);
   }
+  if (manual) manual->set_spindle_axis(order.spindle_is_axis);
   if (manual)
     manual->mdi(manual_block_);
   else

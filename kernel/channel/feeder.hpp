@@ -49,7 +49,8 @@ struct FeederOrder {
   program::Position position{}, touched{};
   std::uint32_t axes = 0;  ///< start: the machine axes that its programs move, as bits
   WayOrder way;
-  std::uint32_t event = 0;  ///< supply: Event::id
+  std::uint32_t event = 0;       ///< supply: Event::id
+  bool spindle_is_axis = false;  ///< start of a typed block: the first spindle is its rotary axis
 };
 
 /// The queues between feeder (outside) and process (in the cycle).

@@ -46,6 +46,11 @@ class Translation {
     order.event.number = 1;
     return order;
   }
+  Result operator()(const program::SpindleAxis& s) const {
+    ForCycle order{EventKind::spindle_axis, {}};
+    order.event.flag = s.on;
+    return order;
+  }
   Result operator()(const program::SpindleMark&) const { return ForCycle{EventKind::spindle_mark, {}}; }
   Result operator()(const program::Tool& t) const {
     if (t.activate) return std::nullopt;

@@ -169,6 +169,7 @@ class Process final : public cycle::ProcessInCycle {
   image::Wait wait_for_go_on(const cycle::ProcessContext& c) const noexcept;
   image::Wait wait_at_event(const cycle::ProcessContext& c) const noexcept;
   image::Wait wait_on_path(const cycle::ProcessContext& c) const noexcept;
+  static image::Wait wait_for_change(const axis::Spindle* turns) noexcept;
   static image::Wait wait_for_step(const axis::Spindle* follower) noexcept;
   image::Wait wait_for_position(const cycle::ProcessContext& c) const noexcept;
   void apply_at_once(cycle::ProcessContext& c) noexcept;
@@ -202,6 +203,9 @@ class Process final : public cycle::ProcessInCycle {
                  cycle::ProcessContext& c) noexcept;
   bool order_spindle(const Event& event, cycle::ProcessContext& c) noexcept;
   bool couple_spindles(const Event& event, cycle::ProcessContext& c) noexcept;
+  bool change_spindle(const Event& event, cycle::ProcessContext& c) noexcept;
+  void return_spindles(cycle::ProcessContext& c) noexcept;
+  static bool is_spindle(int axis, const cycle::ProcessContext& c) noexcept;
   const axis::Spindle* out_of_step(const cycle::ProcessContext& c) const noexcept;
   void end_couplings(cycle::ProcessContext& c) noexcept;
   bool in_position(cycle::ProcessContext& c) const noexcept;

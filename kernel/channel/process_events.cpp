@@ -136,6 +136,8 @@ bool Process::execute(const Event& e, cycle::ProcessContext& c) noexcept {
       return true;
     case EventKind::spindle_coupling:
       return couple_spindles(e, c);
+    case EventKind::spindle_axis:
+      return change_spindle(e, c);
     case EventKind::feed_override:
       override_effective_ = e.flag;
       return true;
@@ -197,6 +199,8 @@ bool Process::order_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
   axis::Spindle* told = this->spindle(e.number, c);
   if (told == nullptr) return true;
   axis::Spindle& spindle = *told;
+  // What was typed has left it an axis, which it is not for a program: it is on its way back.
+  if (!spindle.wants_axis() && !spindle.is_spindle()) return false;
   if (e.mode == program::SpindleMode::turn) {
     if (stage_ == Stage::entered) spindle_turned_ = false;
     surface_speed_ = 0.0;

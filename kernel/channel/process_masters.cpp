@@ -132,6 +132,33 @@ bool Process::couple_spindles(const Event& e, cycle::ProcessContext& c) noexcept
   return out_of_step(c) == nullptr;
 }
 
+/// At rest: the path goes on with the axis where it knows it to stand.
+bool Process::change_spindle(const Event& e, cycle::ProcessContext& c) noexcept {
+  axis::Spindle* turns = spindle(0, c);
+  if (turns == nullptr || turns->config().axis < 0) return true;
+  axis::Axis& a = c.axes[static_cast<std::size_t>(turns->config().axis)];
+  if (stage_ == Stage::entered) {
+    surface_speed_ = 0.0;
+    if (!e.flag) a.release(image::AxisOwner::process);
+    turns->want_axis(e.flag);
+  }
+  stage_ = Stage::waiting;
+  return e.flag ? turns->is_axis() && a.acquire(image::AxisOwner::process) : turns->is_spindle();
+}
+
+/// What a program has made an axis is a spindle at rest behind it.
+void Process::return_spindles(cycle::ProcessContext& c) noexcept {
+  for (axis::Spindle& s : c.spindles)
+    if (s.config().process == config_.index) s.want_axis(false);
+}
+
+/// An axis whose drive is a spindle's, or goes from one to the other.
+bool Process::is_spindle(int axis, const cycle::ProcessContext& c) noexcept {
+  for (const axis::Spindle& s : c.spindles)
+    if (s.config().axis == axis) return !s.is_axis() || !s.wants_axis();
+  return false;
+}
+
 /// The spindle that follows and is not in step while the first one is to turn; nullptr: there is none.
 const axis::Spindle* Process::out_of_step(const cycle::ProcessContext& c) const noexcept {
   const axis::Spindle* leader = spindle(0, c);

@@ -51,6 +51,7 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
         forget_ = forget_ || request.kind == RequestKind::reset;
       } else {
         end_couplings(c);
+        if (request.kind == RequestKind::reset) return_spindles(c);
         state_ = ProcessState::idle;
         handshake_.cancel(c.image, base_);
         if (request.kind == RequestKind::reset)
@@ -89,6 +90,7 @@ void Process::run_on() noexcept {
 }
 
 bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext& c) noexcept {
+  if (!manual_data) return_spindles(c);  // what was typed is nothing of the program
   find_own_axes(c);
   if (!acquire(c)) return false;
   if (!manual_data)
@@ -103,7 +105,10 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   for (std::size_t i = 0; i < c.axes.size(); ++i) order.position[i] = c.image.axes[i].command;
   for (std::size_t i = 0; i < config_.axes.machine.size(); ++i)
     position[i] = order.position[static_cast<std::size_t>(config_.axes.machine[i])];
-  for (const OwnAxis& own : own_axes()) order.axes |= std::uint32_t{1} << own.machine;
+  for (const int a : config_.axes.machine)
+    if (c.axes[static_cast<std::size_t>(a)].process() == config_.index) order.axes |= std::uint32_t{1} << a;
+  if (const axis::Spindle* turns = spindle(0, c); turns != nullptr)
+    order.spindle_is_axis = manual_data && turns->wants_axis();
   follower_.set_position(position);
   link_.look(generation_, c.image);
   link_.orders.push(order);
@@ -148,6 +153,7 @@ void Process::leave(ProcessState state, cycle::ProcessContext& c) noexcept {
   if (forget_) forget_run(c.image.processes[static_cast<std::size_t>(config_.index)]);
   forget_ = false;
   release(c);
+  if (state != ProcessState::ended || !manual_data_) return_spindles(c);
 }
 
 /// They change between two runs only, by the gate.
@@ -155,7 +161,7 @@ void Process::find_own_axes(const cycle::ProcessContext& c) noexcept {
   own_count_ = 0;
   for (std::size_t i = 0; i < config_.axes.machine.size() && i < own_.size(); ++i) {
     const int a = config_.axes.machine[i];
-    if (c.axes[static_cast<std::size_t>(a)].process() == config_.index)
+    if (c.axes[static_cast<std::size_t>(a)].process() == config_.index && !is_spindle(a, c))
       own_[own_count_++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(a)};
   }
 }

@@ -114,6 +114,16 @@ image::Wait Process::wait_for_step(const axis::Spindle* follower) noexcept {
   return wait;
 }
 
+/// The axis has its power when the spindle has become it, and none when it is a spindle again.
+image::Wait Process::wait_for_change(const axis::Spindle* turns) noexcept {
+  image::Wait wait = of(WaitReason::signal);
+  if (turns != nullptr)
+    wait.place = at(image::field(image::kAxisFields, "enabled"), image::axis_base(turns->config().axis));
+  wait.compare = image::Compare::eq;
+  wait.value = turns != nullptr && turns->wants_axis() ? 1.0 : 0.0;
+  return wait;
+}
+
 image::Wait Process::wait_for_go_on(const cycle::ProcessContext& c) const noexcept {
   if (c.image.packets.bit(at(kStopBit, base_))) return of(WaitReason::plc_hold, at(kStopBit, base_));
   return held_ ? of(WaitReason::operator_hold) : image::Wait{};
@@ -153,6 +163,8 @@ image::Wait Process::wait_at_event(const cycle::ProcessContext& c) const noexcep
       return wait;
     case EventKind::spindle_coupling:
       return wait_for_step(spindle(event_.number, c));
+    case EventKind::spindle_axis:
+      return wait_for_change(spindle(0, c));
     case EventKind::stop:
       return of(WaitReason::program_stop);
     case EventKind::optional_stop:

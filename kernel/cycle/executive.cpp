@@ -30,6 +30,8 @@ Cycle::Cycle(CycleParts parts)
   spindles_.resize(parts_.spindles.size());
   for (std::size_t i = 0; i < spindles_.size(); ++i)
     spindles_[i].configure(parts_.spindles[i], static_cast<int>(i));
+  for (const axis::SpindleConfig& s : parts_.spindles)
+    if (s.axis >= 0) axes_[static_cast<std::size_t>(s.axis)].sleep();
 }
 
 Cycle::~Cycle() = default;
@@ -42,6 +44,7 @@ bool Cycle::step() noexcept {
   stamp(Phase::receive);
   run_logic();
   stamp(Phase::logic);
+  for (const axis::Spindle& s : spindles_) s.show_drive(image_);
   for (axis::Axis& a : axes_) a.read(image_);
   for (axis::Spindle& s : spindles_) s.read(image_);
   watch_machine();
@@ -168,6 +171,9 @@ void Cycle::set_time_scale(double scale) noexcept {
 }
 
 void Cycle::run_axes() noexcept {
+  for (axis::Spindle& s : spindles_)
+    if (const int a = s.config().axis; a >= 0)
+      s.share(axes_[static_cast<std::size_t>(a)], image_.now.period_s());
   for (axis::Axis& a : axes_) {
     a.react(reaction_);
     a.command(image_);

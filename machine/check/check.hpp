@@ -52,6 +52,8 @@ void check_gpio_lines(const MachineConfig& machine, Reading& reading);
 void check_boards(const MachineConfig& machine, Reading& reading);
 /// Spindles that follow another one.
 void check_couplings(const MachineConfig& machine, Reading& reading);
+/// Spindles that become a rotary axis.
+void check_spindle_axes(const LoadResult& loaded, Reading& reading);
 /// Gear ranges of spindles.
 void check_gears(const MachineConfig& machine, Reading& reading);
 

@@ -41,6 +41,52 @@ inline constexpr text::Entry kCouplingEncoder{
     "(`drive`, counts_per_rev)",
     "шпиндель {0}: для `coupling` нужен угол обоих шпинделей, а у шпинделя {1} нет привода с датчиком "
     "(`drive`, counts_per_rev)"};
+inline constexpr text::Entry kAxisMAlone{"machine.axis_m_alone",
+                                         "spindle {0}: `axis_m` does nothing without `axis`",
+                                         "шпиндель {0}: `axis_m` без `axis` ни на что не влияет"};
+inline constexpr text::Entry kAxisMSame{
+    "machine.axis_m_same", "spindle {0}: one M function cannot make it axis {1} and a spindle again",
+    "шпиндель {0}: одна функция M не может и переводить его в режим оси {1}, и возвращать"};
+inline constexpr text::Entry kAxisMTaken{"machine.axis_m_taken",
+                                         "spindle {0}: {1} of `axis_m` has a meaning already (own code, or "
+                                         "end of a subprogram): choose another one",
+                                         "шпиндель {0}: у {1} из `axis_m` уже есть значение (собственный код "
+                                         "или конец подпрограммы): выберите другую"};
+inline constexpr text::Entry kSpindleAxisNone{
+    "machine.spindle_axis_none", "spindle {0}: it is to become axis {1}, and the machine has no axis {1}",
+    "шпиндель {0}: должен становиться осью {1}, но оси {1} на станке нет"};
+inline constexpr text::Entry kSpindleAxisProcess{
+    "machine.spindle_axis_process",
+    "spindle {0}: only the first spindle of a process becomes an axis, and axis {1} belongs to that process",
+    "шпиндель {0}: осью становится только первый шпиндель процесса, и ось {1} принадлежит тому же процессу"};
+inline constexpr text::Entry kSpindleAxisDrive{
+    "machine.spindle_axis_drive",
+    "spindle {0}: to become axis {1} it needs a drive on a CAN bus with its encoder (`drive`, "
+    "`counts_per_rev`), no `gears` and no `encoder_delay`",
+    "шпиндель {0}: чтобы стать осью {1}, ему нужен привод на шине CAN с датчиком (`drive`, "
+    "`counts_per_rev`), без `gears` и без `encoder_delay`"};
+inline constexpr text::Entry kSpindleAxisType{
+    "machine.spindle_axis_type",
+    "axis {0}: spindle {1} becomes it: it is a rotary axis of the programs (type = \"rotary\", not "
+    "auxiliary)",
+    "ось {0}: в неё переходит шпиндель {1}: это поворотная ось программ (type = \"rotary\", не auxiliary)"};
+inline constexpr text::Entry kSpindleAxisOther{
+    "machine.spindle_axis_other", "axis {0}: spindle {1} becomes it: it has that spindle's drive, \"{2}\"",
+    "ось {0}: в неё переходит шпиндель {1}: у неё привод этого шпинделя, «{2}»"};
+inline constexpr text::Entry kSpindleAxisHome{
+    "machine.spindle_axis_home",
+    "axis {0}: spindle {1} becomes it and knows its zero mark: home.method = \"none\"",
+    "ось {0}: в неё переходит шпиндель {1}, и нулевая метка ему известна: home.method = \"none\""};
+inline constexpr text::Entry kSpindleAxisCounts{
+    "machine.spindle_axis_counts",
+    "axis {0}: {1} counts in 360°, and spindle {2}, which becomes it, has counts_per_rev = {3}",
+    "ось {0}: {1} дискрет на 360°, а у шпинделя {2}, который в неё переходит, counts_per_rev = {3}"};
+inline constexpr text::Entry kSpindleAxisDevice{
+    "machine.spindle_axis_device",
+    "spindle {0}: to become axis {1} its drive needs speed_mode csv and position_mode csp, and the target "
+    "position (607A) and the target velocity (60FF) in an rpdo: device \"{2}\"",
+    "шпиндель {0}: чтобы стать осью {1}, приводу нужны speed_mode csv и position_mode csp, а в rpdo — "
+    "заданное положение (607A) и заданная скорость (60FF): устройство «{2}»"};
 inline constexpr text::Entry kGearOrder{
     "machine.gear_order",
     "spindle {0}: gear \"{1}\" reaches {2} rpm, no more than the gear before it: slow ones first",

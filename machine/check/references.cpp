@@ -146,9 +146,17 @@ void check_drive_owners(const MachineConfig& machine, Reading& reading) {
     const auto [it, fresh] = owners.try_emplace(drive, who);
     if (!fresh) reading.error(machine.where(path), finding::kNodeTwice, {drive, it->second});
   };
+  // A spindle that becomes an axis shares its drive with it, and nobody else does.
+  const auto becomes = [&machine](const AxisConfig& a) {
+    return std::any_of(machine.spindles.begin(), machine.spindles.end(), [&a](const SpindleConfig& s) {
+      return !a.letter.empty() && s.axis == a.letter && s.drive == a.drive;
+    });
+  };
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    own(machine.axes[i].drive, text::both("axis " + machine.axes[i].letter, "ось " + machine.axes[i].letter),
-        "axis." + std::to_string(i) + ".drive");
+    if (!becomes(machine.axes[i]))
+      own(machine.axes[i].drive,
+          text::both("axis " + machine.axes[i].letter, "ось " + machine.axes[i].letter),
+          "axis." + std::to_string(i) + ".drive");
   for (std::size_t i = 0; i < machine.spindles.size(); ++i)
     own(machine.spindles[i].drive,
         text::both("spindle " + std::to_string(i + 1), "шпиндель " + std::to_string(i + 1)),

@@ -428,6 +428,14 @@ const Section& section_of<SpindleConfig>() {
           "so far, in degrees, a coupled spindle may be off the angle it is led to; further off it is alarm "
           "1210",
           "на столько градусов связанный шпиндель может отстоять от заданного угла; дальше — авария 1210"),
+      key<&C::axis>(
+          "axis", {},
+          "letter of the rotary axis that it becomes, which has the same `drive`; of the first spindle of a "
+          "process",
+          "буква поворотной оси, в которую он переходит; у неё тот же `drive`; у первого шпинделя процесса"),
+      key<&C::axis_m>("axis_m", {.min = 31, .max = 999},
+                      "M functions of programs: the spindle becomes the axis : it is a spindle again",
+                      "функции M программ: шпиндель становится осью : снова шпиндель"),
   };
   static const Section section{"a spindle", "шпиндель", keys, &default_object<C>};
   return section;

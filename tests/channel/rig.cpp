@@ -56,6 +56,7 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
   s.state = spindle_fault    ? image::DriveState::fault
             : spindle_.power ? image::DriveState::operation_enabled
                              : image::DriveState::switch_on_disabled;
+  s.mode = spindle_.mode;
   const double told = spindle_.power && !spindle_fault ? spindle_.velocity_counts_s : 0.0;
   if (!spindle_coasts) s.velocity_counts_s = spindle_one_way ? std::max(0.0, told) : told;
   if (spindle_backwards) s.velocity_counts_s = -told;
@@ -63,7 +64,9 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
   s.missed = spindle_silent ? s.missed + 1 : 0;
   const double period = image.now.period_s(), was = turns;
   slipped_ += std::clamp(slip - slipped_, -0.002, 0.002);  // 10 % in 50 ms: it has inertia
-  turns += s.velocity_counts_s / 4096.0 * (1.0 - slipped_) * period;
+  lead_spindle(s, period);
+  if (spindle_.mode != image::DriveMode::csp)
+    turns += s.velocity_counts_s / 4096.0 * (1.0 - slipped_) * period;
   if (spindle_.latch_arm && s.latch_sequence == 0 && std::floor(turns) != std::floor(was)) {
     s.latch_sequence = 1;
     s.latch_counts = 0;
@@ -72,6 +75,18 @@ void IdealDrives::receive(image::ProcessImage& image, image::Notices&) noexcept 
   second_spindle(image);
 
   if (clearance) probe(image);
+}
+
+/// To a position, as the axes; by a speed it is where that has led it.
+void IdealDrives::lead_spindle(image::DriveFeedback& s, double period_s) {
+  const double before = turns;
+  const std::int64_t now = std::llround(turns * 4096.0);
+  const bool on = spindle_.power && !spindle_fault && led_on_;
+  led_on_ = spindle_.power && spindle_.mode == image::DriveMode::csp;
+  if (on) turns = static_cast<double>(led_[0]) / 4096.0;
+  led_ = {led_[1], spindle_.position_counts};
+  if (!on) led_ = {now, now};
+  if (spindle_.mode == image::DriveMode::csp) s.velocity_counts_s = (turns - before) * 4096.0 / period_s;
 }
 
 /// Where there is none, nobody reads it.
@@ -191,7 +206,8 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   config.handshake_timeout_s = handshake_timeout_s;
   cycle::CycleParts parts;
   parts.alarms = &tests::alarm_table();
-  const char* letters[] = {"X", kind == RigKind::rotary ? "B" : "Y", "Z"};
+  const bool c_axis = kind == RigKind::c_axis;
+  const char* letters[] = {"X", kind == RigKind::rotary ? "B" : c_axis ? "C" : "Y", "Z"};
   if (kind == RigKind::lathe) config.axes.surface_speed_axis = 0;
   config.axes.spindle_max_rpm = model_.spindle_max_rpm = kSpindleMax;
   for (int a = 0; a < kAxes; ++a) {
@@ -212,11 +228,19 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
     m.rapid = kLimits.velocity;
     m.diameter = kind == RigKind::lathe && a == 0;
     m.rotary = c.rotary = config.path.rotary[static_cast<std::size_t>(a)] = kind == RigKind::rotary && a == 1;
+    if (c_axis && a == 1) {
+      c.counts_numerator = 4096, c.counts_denominator = 360;
+      m.rotary = c.rotary = config.path.rotary[1] = true;
+      c.travel_limited = false;
+      c.in_position_window = 0.1;
+      m.travel_min = -1e9, m.travel_max = 1e9;
+    }
     model_.axes.push_back(m);
     parts.axes.push_back(c);
   }
   model_.power_on = {"G94", "G97", "G90", "G71", std::string(power_on)};
   model_.variables = {{"ERF", 0.01}, {"MCD", 2}};
+  if (c_axis) model_.spindle_axis = 1, model_.spindle_axis_on_m = 70, model_.spindle_axis_off_m = 71;
   if (dialect != "nc110") {
     model_.power_on = {std::string(power_on)};
     model_.variables.clear();
@@ -237,6 +261,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   parts.processes = {process.get()};
   parts.spindles.emplace_back().max_rpm = kSpindleMax;
   parts.spindles.back().encoder = kind != RigKind::blind;
+  if (c_axis) parts.spindles.back().axis = 1;
   if (kind == RigKind::polygon) {
     parts.spindles.emplace_back().max_rpm = kSpindleMax;
     parts.spindles.back().coupling = axis::CouplingBy::setpoint;
@@ -246,7 +271,8 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   EXPECT_EQ(ask(RequestKind::power, 1.0), cycle::Refusal::none);
   EXPECT_TRUE(until([this] {
     const auto axes = cycle->axes();
-    return std::all_of(axes.begin(), axes.end(), [](const axis::Axis& a) { return a.motion_permitted(); });
+    return std::all_of(axes.begin(), axes.end(),
+                       [](const axis::Axis& a) { return a.motion_permitted() || a.asleep(); });
   }));
   EXPECT_EQ(ask(RequestKind::mode, static_cast<double>(image::Mode::automatic)), cycle::Refusal::none);
 }

@@ -54,7 +54,10 @@ class IdealDrives final : public image::CycleDevice {
   double clear_before_ = 1.0, slipped_ = 0.0;
   int since_edge_ = 1000000;
   void second_spindle(image::ProcessImage& image);
+  void lead_spindle(image::DriveFeedback& s, double period_s);
   image::DriveCommand spindle_, second_;
+  std::array<std::int64_t, 2> led_{};
+  bool led_on_ = false;
   double second_turns_ = 0.0;
 };
 
@@ -98,8 +101,21 @@ class TestLogic final : public image::Logic {
 /// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
 /// Or one whose tool leaves a thread to where it came from. Or one whose drives latch the touch. Or one whose
 /// programs speak the ISO dialect, or Fenix. Or a lathe in the ISO dialect whose second spindle may follow
-/// the first one.
-enum class RigKind { mill, lathe, rotary, lawless, blind, retracting, infeed, latching, iso, fenix, polygon };
+/// the first one. Or one whose second axis is an endless C that the spindle becomes, by M70 and back by M71.
+enum class RigKind {
+  mill,
+  lathe,
+  rotary,
+  lawless,
+  blind,
+  retracting,
+  infeed,
+  latching,
+  iso,
+  fenix,
+  polygon,
+  c_axis
+};
 
 /// A process with its cycle, three ideal axes and a test's PLC. Homed and powered, in AUTO, standing at 0, 0,
 /// 0.

@@ -120,6 +120,12 @@ class Reader {
           if (case_.machine.axes[a].letter == letter) case_.start[a] = number;
     } else if (name[0] == "coupled") {
       case_.machine.coupled_max_rpm = std::stod(value);
+    } else if (name[0] == "spindle_axis") {
+      const auto words = words_of(value);
+      for (std::size_t a = 0; a < case_.machine.axes.size(); ++a)
+        if (case_.machine.axes[a].letter == words.at(0)) case_.machine.spindle_axis = static_cast<int>(a);
+      case_.machine.spindle_axis_on_m = std::stoi(words.at(1));
+      case_.machine.spindle_axis_off_m = std::stoi(words.at(2));
     } else if (name[0] == "spindles") {
       case_.machine.spindles = std::stoi(value);
     } else if (name[0] == "spindle") {

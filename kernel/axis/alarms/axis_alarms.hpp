@@ -51,6 +51,8 @@ inline constexpr AlarmNumber kSpindleGear = 1209;
 inline constexpr AlarmNumber kSpindleSyncLost = 1210;
 inline constexpr AlarmNumber kSpindleNotSynchronous = 1211;
 inline constexpr AlarmNumber kSpindleCoupled = 1212;
+inline constexpr AlarmNumber kSpindleNoAxis = 1213;
+inline constexpr AlarmNumber kSpindleIsAxis = 1214;
 
 inline constexpr AlarmNumber kDriveFault = 2001;
 inline constexpr AlarmNumber kDriveRefuses = 2002;

@@ -323,6 +323,23 @@ inline constexpr image::AlarmRow kAxisRows[] = {
       "{0}: следует за первым шпинделем и других заданий вращения не принимает"},
      "End the coupling first (G50.2).",
      "Сначала отмените связь (G50.2)."},
+    {alarm::kSpindleNoAxis,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"spindle.no_axis", "{0}: it has not become its axis within {2} s; it stays a spindle at rest",
+      "{0}: не перешёл в режим оси за {2} с; остаётся неподвижным шпинделем"},
+     "See whether the PLC enables spindle and axis and permits the axis' feed, whether the drives are on, "
+     "and "
+     "whether the drive has a zero mark and the mode csp.",
+     "Проверьте, разрешает ли ПЛК шпиндель, ось и подачу оси, включены ли приводы, есть ли у привода нулевая "
+     "метка и режим csp."},
+    {alarm::kSpindleIsAxis,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"spindle.is_axis", "{0}: it is a rotary axis now and takes no order to turn",
+      "{0}: работает как поворотная ось и заданий вращения не принимает"},
+     "Make it a spindle again first: the second M function of axis_m, or a reset.",
+     "Сначала верните режим шпинделя: вторая функция M из axis_m или сброс."},
     {alarm::kDriveFault,
      image::Reaction::stop_on_path,
      image::ResetCondition::cause_gone,

@@ -149,6 +149,7 @@ struct SpindleConfig {
   std::uint32_t missed_limit = 3;
   CouplingBy coupling = CouplingBy::none;
   double coupling_window = 2.0;  ///< degrees off the angle it is led to; beyond: synchronism is lost
+  int axis = -1;  ///< place in the image of the rotary axis that it becomes, with the same drive; -1: none
 };
 
 }  // namespace servogate::axis

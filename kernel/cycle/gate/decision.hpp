@@ -80,6 +80,7 @@ class Decision {
            refuse(Refusal::manual_held, -1, static_cast<double>(c_.holder));
   }
   bool ready(const Axis& a) noexcept {
+    if (a.asleep()) return refuse(Refusal::axis_is_spindle, a.index());
     if (a.motion_permitted()) return feed_enabled(a);
     // While one of them is being switched off, none can be switched on: that comes first.
     for (const Axis& b : c_.axes)

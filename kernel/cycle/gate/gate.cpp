@@ -268,6 +268,8 @@ bool Decision::assign() noexcept {
   const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
   if (!no_program_of(a.process()) || !no_program_of(r_.process)) return false;
   if (!no_homing() || !not_held_by_another() || !free(a)) return false;
+  for (const axis::Spindle& s : c_.spindles)
+    if (s.config().axis == a.index()) return refuse(Refusal::axis_is_spindle, a.index());
   return a.standstill() || refuse(Refusal::axis_moves, r_.axis);
 }
 
@@ -328,7 +330,7 @@ bool Decision::start() noexcept {
   if (m >= Mode::manual) return refuse(Refusal::wrong_mode, -1, static_cast<double>(m));
   if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes) {
-    if (!of_process(a)) continue;
+    if (!of_process(a) || a.asleep()) continue;
     if (!a.homed()) return refuse(Refusal::not_homed, a.index());
     // A program knows no slow way off a switch: that is jogging's.
     if (a.on_limit_plus() || a.on_limit_minus())
@@ -346,7 +348,7 @@ bool Decision::resume() noexcept {
   if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
   // Behind an open door nothing is begun that its closing would let go.
   for (const Axis& a : c_.axes)
-    if (of_process(a) && !feed_enabled(a)) return false;
+    if (of_process(a) && !a.asleep() && !feed_enabled(a)) return false;
   if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
   for (const Axis& a : c_.axes)
     if (of_process(a) && a.moving()) return refuse(Refusal::axis_moves, a.index());
@@ -417,7 +419,7 @@ std::uint32_t homing_mask(const Request& request, std::span<const Axis> axes) no
   if (request.value > 0.0) return static_cast<std::uint32_t>(request.value);
   std::uint32_t mask = 0;
   for (const Axis& a : axes)
-    if (!a.config().auxiliary) mask |= 1u << a.index();
+    if (!a.config().auxiliary && !a.asleep()) mask |= 1u << a.index();
   return mask;
 }
 

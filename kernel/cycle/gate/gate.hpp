@@ -82,6 +82,7 @@ enum class Refusal : std::uint16_t {
   retraced,       ///< value: path from where the axes stand to where the program was held, mm (degrees)
   spindle_differs,  ///< value: rpm of the spindle when the program was held, + clockwise
   tool_differs,     ///< value: the tool that was in the spindle then
+  axis_is_spindle,  ///< axis: its drive is a spindle's now
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis

@@ -34,7 +34,7 @@ bool Decision::along_path() noexcept {
   if (!no_alarm(Reaction::stop_on_path) || !process_stands()) return false;
   if (c_.beside.functions) return refuse(Refusal::function_runs);
   for (const Axis& a : c_.axes)
-    if (of_process(a) && (!ready(a) || !free(a))) return false;
+    if (of_process(a) && !a.asleep() && (!ready(a) || !free(a))) return false;
   return true;
 }
 

@@ -169,8 +169,12 @@ constexpr text::Entry kTexts[] = {
      "reset` and go on with `servogate start --interrupted`",
      "программа приостановлена с инструментом {1} в шпинделе: верните его, или завершите программу командой "
      "`servogate reset` и продолжите командой `servogate start --interrupted`"},
+    {"gate.axis_is_spindle",
+     "{0} is a spindle now: its M function (`axis_m` of the machine file) makes it an axis first",
+     "{0} сейчас работает как шпиндель: сначала переведите его в режим оси функцией M (`axis_m` в файле "
+     "станка)"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::tool_differs) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::axis_is_spindle) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 

@@ -130,6 +130,10 @@ struct SpindleCoupling {
   std::int32_t leader = 1, follower = 1;  ///< turns; `follower` below 0: it turns the other way
   double phase_deg = 0.0;
 };
+/// The first spindle becomes the rotary axis that the machine file names; off: it is a spindle at rest again.
+struct SpindleAxis {
+  bool on = false;
+};
 /// What one process asks of another, which has a number from 1 (0: the process itself).
 struct ProcessOrder {
   enum class Action : std::uint8_t {
@@ -168,7 +172,8 @@ struct Command {
   int process = 0;
   std::int32_t block = -1;  ///< N number, -1: none
   std::variant<Rapid, Line, Arc, Thread, Dwell, Spindle, Tool, MFunction, HFunction, Message, WritePlace,
-               Wait, Stop, Probe, End, SpindleMark, ProcessOrder, InPosition, FeedOverride, SpindleCoupling>
+               Wait, Stop, Probe, End, SpindleMark, ProcessOrder, InPosition, FeedOverride, SpindleCoupling,
+               SpindleAxis>
       what;
 };
 

@@ -205,14 +205,16 @@ struct Fields {
     w.count("follower", c.follower);
     w.field("phase", c.phase_deg);
   }
+  void operator()(const SpindleAxis& c) const { w.flag("on", c.on); }
 };
 
 /// In the order of Command::what.
-constexpr std::string_view kNames[] = {"rapid",   "line",        "arc",           "thread",
-                                       "dwell",   "spindle",     "tool",          "m",
-                                       "h",       "message",     "write",         "wait",
-                                       "stop",    "probe",       "end",           "spindle_mark",
-                                       "process", "in_position", "feed_override", "spindle_coupling"};
+constexpr std::string_view kNames[] = {"rapid",       "line",        "arc",           "thread",
+                                       "dwell",       "spindle",     "tool",          "m",
+                                       "h",           "message",     "write",         "wait",
+                                       "stop",        "probe",       "end",           "spindle_mark",
+                                       "process",     "in_position", "feed_override", "spindle_coupling",
+                                       "spindle_axis"};
 static_assert(std::size(kNames) == std::variant_size_v<decltype(Command::what)>);
 
 }  // namespace

@@ -191,6 +191,8 @@ class Execution : public ValueSource {
   void after_motion(const BlockWords& words);
   void spindle_word(const BlockWords& words, const MRule* start, const Word* start_word);
   void end_function(int code, const MRule* rule, int column);
+  void change_spindle(int code, int column);
+  void stay_spindle();
   void tool_words(const BlockWords& words);
   void replace_worn_out(const Word& word, int chosen);
   void change_tool();
@@ -206,7 +208,7 @@ class Execution : public ValueSource {
   Frames frames_{dialect_, machine_, data_.axes, state_.frames};
   Capability capability_{dialect_,     machine_,      block_,        flow_,
                          state_.modes, state_.frames, state_.motion, data_.warnings};
-  Output output_{data_.queue, flow_, block_, data_.process, state_};
+  Output output_{data_.queue, flow_, block_, data_.process, state_, machine_};
   Contour contour_{dialect_,       machine_,    flow_,         state_.frames,          frames_,
                    state_.contour, data_.queue, data_.process, state_.motion.arc_feed, state_.motion.watch};
   Motion motion_{dialect_,      machine_, block_,      numbers_, state_.modes, state_.frames,

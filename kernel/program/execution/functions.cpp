@@ -57,9 +57,33 @@ void Execution::before_motion(const BlockWords& words) {
   for (int i = 0; i < words.m_count; ++i) {
     const int code = words.m_code[static_cast<std::size_t>(i)];
     const MRule* rule = dialect_.find_m(code);
-    if (rule == nullptr || !rule->after_motion) emit(MFunction{code, false});
+    if (rule != nullptr && rule->after_motion) continue;
+    emit(MFunction{code, false});
+    change_spindle(code, words.m[static_cast<std::size_t>(i)]->column);
   }
   if (words.h != nullptr) emit(HFunction{numbers_.whole(words.h->value, "H")});
+}
+
+/// The M functions of the machine file that make the spindle an axis, and a spindle again.
+void Execution::change_spindle(int code, int column) {
+  const int axis = machine_.spindle_axis;
+  MotionState& motion = state_.motion;
+  const bool on = code == machine_.spindle_axis_on_m;
+  if (axis < 0 || (!on && code != machine_.spindle_axis_off_m) || on == motion.spindle_is_axis) return;
+  if (motion.coupled)
+    fail(Fault::spindle_axis_coupled, column, {machine_.axes[static_cast<std::size_t>(axis)].letter});
+  motion_.end_profile();
+  emit(SpindleAxis{on});
+  stay_spindle();
+  motion.spindle_is_axis = on;
+  motion.spindle = SpindleMode::stop;
+}
+
+/// The axis that it may become stands where the program knows it to stand.
+void Execution::stay_spindle() {
+  if (machine_.spindle_axis < 0) return;
+  state_.motion.spindle_is_axis = false;
+  state_.motion.spindle_axis_place = state_.frames.machine[static_cast<std::size_t>(machine_.spindle_axis)];
 }
 
 /// T and the corrector: as one word, or each with its own.
@@ -105,6 +129,8 @@ void Execution::replace_worn_out(const Word& word, int chosen) {
 }
 
 void Execution::spindle_word(const BlockWords& words, const MRule* start, const Word* start_word) {
+  if (words.speed != nullptr) output_.refuse_turning(words.speed->column);
+  if (start != nullptr && start->action != MAction::spindle_stop) output_.refuse_turning(start_word->column);
   if (words.speed != nullptr) {
     if (machine_.spindles == 0)
       fail(Fault::no_spindle, words.speed->column, {word_text(dialect_, block_, *words.speed)});

@@ -246,8 +246,17 @@ constexpr text::Entry kMessages[] = {
      "{0}: угол {1} не помещается между соседними участками контура"},
     {"P114", "the skip level {0} is none: there are 0 to 9",
      "уровня пропуска {0} нет: есть уровни от 0 до 9"},
+    {"P756", "axis {0} is a spindle now: M{1} makes it an axis first",
+     "ось {0} сейчас работает как шпиндель: сначала переведите её в режим оси функцией M{1}"},
+    {"P757",
+     "the spindle is axis {0} now: it neither turns nor leads a thread, a feed per revolution or another "
+     "spindle; M{1} makes it a spindle again first",
+     "шпиндель сейчас работает как ось {0}: вращение, резьба, подача на оборот и связь шпинделей невозможны; "
+     "сначала верните режим шпинделя функцией M{1}"},
+    {"P758", "the second spindle follows this one: end the coupling before it becomes axis {0}",
+     "второй шпиндель следует за этим: отмените связь, прежде чем он станет осью {0}"},
 };
-static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::skip_level) + 1);
+static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::spindle_axis_coupled) + 1);
 
 }  // namespace
 

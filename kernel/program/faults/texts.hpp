@@ -156,6 +156,9 @@ enum class Fault : std::uint8_t {
   own_code_alone,
   cycle_corner,
   skip_level,
+  axis_is_spindle,
+  spindle_is_axis,
+  spindle_axis_coupled,
 };
 
 /// All texts, in the order of Fault.

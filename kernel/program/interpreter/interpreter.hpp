@@ -93,6 +93,8 @@ class Interpreter {
   void probed(const Position& at);
   /// Before the first next(): what the operator has set.
   void set_switches(const OperatorSwitches& switches);
+  /// Before the first next(): whether the first spindle is its rotary axis.
+  void set_spindle_axis(bool on);
   /// Number of the origin in force of an axis.
   int origin(int axis) const;
   /// Length of the tool in force along an axis, wear included, mm.

@@ -55,6 +55,7 @@ class Survey {
     if (std::holds_alternative<WritePlace>(command.what)) ++writes;
     const auto* coupling = std::get_if<SpindleCoupling>(&command.what);
     if (coupling != nullptr && coupling->on) return false;
+    if (const auto* axis = std::get_if<SpindleAxis>(&command.what); axis != nullptr && axis->on) return false;
     return !std::holds_alternative<Probe>(command.what) &&
            !std::holds_alternative<ProcessOrder>(command.what);
   }

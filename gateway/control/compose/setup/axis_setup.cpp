@@ -260,6 +260,7 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
   c.orient_rpm = s.orient_speed;
   c.coupling = static_cast<axis::CouplingBy>(s.coupling);
   c.coupling_window = s.coupling_window;
+  c.axis = loaded.machine.axis_index(s.axis);
   return c;
 }
 

@@ -172,6 +172,9 @@ canopen::SegmentConfig segment_config(const machine::LoadResult& loaded, int ind
     if (n.target == canopen::DriveTarget::spindle &&
         n.profile.velocity_mode == canopen::OperationMode::velocity)
       n.setup.vl = vl_of(m.spindles[static_cast<std::size_t>(n.target_index)], n.profile);
+    if (n.target == canopen::DriveTarget::spindle &&
+        !m.spindles[static_cast<std::size_t>(n.target_index)].axis.empty())
+      n.profile.modes |= canopen::supported_bit(n.profile.position_mode);
     if (n.target == canopen::DriveTarget::spindle)
       braking_counts_s2 = ramp_rpm_s / 60.0 * static_cast<double>(n.profile.counts_per_rev);
     n.setup.quick_stop_ramp = object_value(braking_counts_s2 / n.profile.acceleration_unit_counts_s2);

@@ -44,6 +44,7 @@ void make_spindle(mock::SimulatedDriveConfig& c) {
   c.product_code = 0x0001'0192 + 0x0010'0000;
   c.modes = supported_bit(OperationMode::velocity) | supported_bit(OperationMode::profile_velocity) |
             supported_bit(OperationMode::profile_torque) | supported_bit(OperationMode::homing) |
+            supported_bit(OperationMode::cyclic_sync_position) |
             supported_bit(OperationMode::cyclic_sync_velocity) |
             supported_bit(OperationMode::cyclic_sync_torque);
   c.plant.counts_per_rev = 4'096;

@@ -50,6 +50,7 @@ void Motion::give(const BlockWords& words, What&& what, const Position& to) {
     }
     return output_.emit(std::forward<What>(what));
   }
+  output_.check(what);
   ContourElement e;
   e.in_plane = words.axis[at(a1)] != nullptr || words.axis[at(a2)] != nullptr;
   e.start = {at_.machine[at(a1)], at_.machine[at(a2)]};

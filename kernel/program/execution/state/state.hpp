@@ -154,7 +154,10 @@ struct MotionState : ProgrammedFeed {
   bool dry_run = false;        ///< feed motions at rapid speed
   ArcFeed arc_feed = ArcFeed::tool_centre;
   ContourWatch watch;
-  bool profile_open = false;  ///< inside of a running chain of feed blocks without a stop
+  bool coupled = false;             ///< the second spindle follows the first one
+  bool spindle_is_axis = false;     ///< the first spindle is its rotary axis ...
+  double spindle_axis_place = 0.0;  ///< ... which stands here while it is none; machine coordinate
+  bool profile_open = false;        ///< inside of a running chain of feed blocks without a stop
   Cycle cycle;
 };
 
