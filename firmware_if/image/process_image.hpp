@@ -68,6 +68,9 @@ struct SpindleImage {
   double angle_deg = 0.0;
   bool running = false;
   bool at_speed = false;
+  bool is_axis = false;          ///< its drive is its rotary axis', whose image has the same feedback
+  bool coupled = false;          ///< it is held to the angle of the spindle that it follows
+  double phase_error_deg = 0.0;  ///< of one that is coupled: how far it is behind that angle, + behind; or 0
   DriveCommand drive_command;
   DriveFeedback drive;
 };

@@ -145,8 +145,8 @@ class Axis {
 
   // -- the drive of a spindle
   /// Its drive is a spindle's (kernel/axis/spindle_axis.cpp): the axis neither judges nor commands it, and
-  /// its set-point stays. Only without power. real-time safe.
-  void sleep() noexcept;
+  /// its set-point stays at `place`. Only without power. real-time safe.
+  void sleep(double place) noexcept;
   /// It has its drive again: these counts are the home position. It powers it where power is asked for.
   void wake(std::int64_t reference_counts) noexcept;
   bool asleep() const noexcept { return asleep_; }

@@ -205,19 +205,20 @@ void Axis::set_reference(std::int64_t reference_counts) noexcept {
   follow_feedback();
 }
 
-void Axis::sleep() noexcept {
+void Axis::sleep(double place) noexcept {
   if (power_.holding()) return;
   owner_ = AxisOwner::none;
   asleep_ = homed_ = in_position_ = actual_standing_ = true;
   held_ = moving_ = own_motion_ = stopped_by_reaction_ = process_given_ = off_path_ = false;
-  actual_ = set_.x;
+  actual_ = set_.x = place;
   set_.v = set_.a = following_error_ = actual_velocity_ = 0.0;
 }
 
-/// How fast the spindle has turned, and since when its drive is there, is nothing of the axis.
+/// How fast the spindle has turned is nothing of the axis.
 void Axis::wake(std::int64_t reference_counts) noexcept {
   if (!asleep_) return;
-  asleep_ = lets_go_ = seen_counts_ = seen_online_ = false;
+  asleep_ = lets_go_ = seen_counts_ = false;
+  seen_online_ = drive_.online;
   last_counts_ = drive_.position_counts;
   set_reference(reference_counts);
 }

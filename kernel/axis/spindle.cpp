@@ -316,6 +316,9 @@ void Spindle::command(image::ProcessImage& image) noexcept {
   out.command_rpm = on_ ? command_rpm_ : 0.0;
   out.running = mode_ != SpindleMode::stop || !zero_speed_;
   out.at_speed = at_speed_;
+  out.is_axis = lent();
+  out.coupled = link_.placed() && led_.known;
+  out.phase_error_deg = out.coupled ? phase_error_deg_ : 0.0;
   leading_ = {};
   if (!config_.inverter) write_drive(image, out);
   write_interface(image);
@@ -339,6 +342,7 @@ void Spindle::write_drive(image::ProcessImage& image, image::SpindleImage& out) 
   drive.mode = image::DriveMode::csv;
   drive.latch_source = image::LatchSource::zero_mark;
   drive.latch_arm = !marked_ && drive_.online;
+  drive.latch_negative = false;
   drive.position_counts = drive_.position_counts;
   drive.velocity_counts_s =
       on_ ? scale_.velocity_counts((command_rpm_ + correction_rpm_) / 60.0) * gears_.ratio() : 0.0;

@@ -52,7 +52,8 @@ struct SpindleAngle {
 /// One with SpindleConfig::axis becomes a rotary axis when it is told to (want_axis()): it stops oriented
 /// where that axis stood last, its drive goes off, and comes on again in csp as the axis' own, which knows
 /// its place from the zero mark. Back it goes at rest: the axis lets go, and the spindle stands without an
-/// order. As an axis it takes no order to turn.
+/// order. As an axis it takes no order to turn. Where its drive goes away it is a spindle: the place of the
+/// axis is not known any more.
 class Spindle {
  public:
   /// `index` is the spindle's place in the image. Not for the cycle.
@@ -88,6 +89,7 @@ class Spindle {
   /// It is a spindle, and on no way to anything else.
   bool is_spindle() const noexcept { return use_ == Use::spindle; }
   /// One cycle of the change between the two, before the command() of both. real-time safe.
+  /// What keeps it from becoming the axis, and no alarm tells otherwise, is an alarm.
   void share(Axis& axis, double dt) noexcept;
   /// Its drive as that of the axis, before both are read. real-time safe.
   void show_drive(image::ProcessImage& image) const noexcept;
@@ -131,6 +133,8 @@ class Spindle {
   // spindle_axis.cpp
   void begin_axis(const Axis& axis) noexcept;
   void hand_over(Axis& axis) noexcept;
+  void let_go(Axis& axis) noexcept;
+  bool failed_on_its_way() noexcept;
   void give_up_axis(Axis& axis) noexcept;
   void follow_drive(double wanted, double dt) noexcept;
   // spindle_coupling.cpp

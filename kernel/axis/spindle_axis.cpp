@@ -36,30 +36,45 @@ void Spindle::hand_over(Axis& axis) noexcept {
   use_ = Use::powering;
 }
 
+/// Where the axis stood, or was to stand, is where it goes on: what it sags without power is not its place.
+void Spindle::let_go(Axis& axis) noexcept {
+  if (use_ == Use::axis) place_ = axis.setpoint().x;
+  axis.let_go();
+  use_ = Use::leaving;
+}
+
 /// The change does not come to its end: a spindle at rest.
 void Spindle::give_up_axis(Axis& axis) noexcept {
   wants_axis_ = false;
   if (lent()) {
     axis.stop();
-    axis.let_go();
-    use_ = Use::leaving;
-    return;
+    return let_go(axis);
   }
   order(SpindleMode::stop, 0.0);
   use_ = Use::spindle;
 }
 
-void Spindle::share(Axis& axis, double dt) noexcept {
+/// Whatever told it otherwise (a stop, a fault, a reaction) has the last word. A fault, an emergency
+/// stop and what its axis loses are told by themselves.
+bool Spindle::failed_on_its_way() noexcept {
+  using image::DriveState;
   const double patience = config_.orient_timeout + kDrivePatience;
+  const bool told_otherwise = use_ == Use::orienting && mode_ != SpindleMode::orient;
+  const bool fault = drive_.online &&
+                     (drive_.state == DriveState::fault || drive_.state == DriveState::fault_reaction_active);
+  if (!told_otherwise && drive_.online && !fault && changing_s_ <= patience) return false;
+  const bool known = reaction_ >= image::Reaction::stop_and_power_off || (fault && !reset_pending_) ||
+                     (lent() && !drive_.online);
+  if (!known) events_.add({alarm::kSpindleNoAxis, patience, changing_s_});
+  return true;
+}
+
+void Spindle::share(Axis& axis, double dt) noexcept {
   const bool on_its_way = use_ >= Use::orienting && use_ <= Use::placing;
   changing_s_ = on_its_way ? changing_s_ + dt : 0.0;
-  if (on_its_way && changing_s_ > patience) {
-    events_.add({alarm::kSpindleNoAxis, patience, patience});
-    return give_up_axis(axis);
-  }
-  // Whatever told it otherwise (a stop, a fault, a reaction) has the last word.
-  const bool told = use_ == Use::orienting && mode_ != SpindleMode::orient;
-  if ((on_its_way && !wants_axis_) || told) return give_up_axis(axis);
+  if (on_its_way && (!wants_axis_ || failed_on_its_way())) return give_up_axis(axis);
+  // The counts from the mark on are gone with the drive, and the axis says so.
+  if (use_ == Use::axis && !drive_.online) return give_up_axis(axis);
   const bool off = !drive_.online || drive_.state != image::DriveState::operation_enabled;
   switch (use_) {
     case Use::spindle:
@@ -80,17 +95,17 @@ void Spindle::share(Axis& axis, double dt) noexcept {
         use_ = Use::placing;
       break;
     case Use::placing:
-      if (!axis.moving() && axis.setpoint().x == place_) use_ = Use::axis;
+      // Without its feed it has stopped on its way.
+      if (!axis.moving()) use_ = axis.setpoint().x == place_ ? Use::axis : Use::powering;
       break;
     case Use::axis:
       // Whoever moves it comes to his end first.
       if (wants_axis_ || axis.owner() != image::AxisOwner::none || !axis.standstill()) break;
-      axis.let_go();
-      use_ = Use::leaving;
+      let_go(axis);
       break;
     case Use::leaving:
       if (axis.power_state() != PowerSequence::State::off || !off) break;
-      axis.sleep();
+      axis.sleep(place_);
       order(SpindleMode::stop, 0.0);
       use_ = Use::spindle;
       break;

@@ -156,12 +156,15 @@ void Spindle::watch_coupling(double dt) noexcept {
   phase_error_deg_ = 360.0 * behind;
   // The place is chosen at the speed: until then any would be wrong by the time that is ramped.
   if (!link_.placed() && led_.known && turns && on_ && enable_ &&
-      std::abs(command_rpm_ - led_.rpm) <= config_.acceleration * dt)
+      std::abs(command_rpm_ - led_.rpm) <= config_.acceleration * dt) {
+    const double before = link_.place(0.0);
     link_.choose(behind);
-  else if (link_.placed() && link_.watch(behind, config_.coupling_window, dt))
+    phase_error_deg_ += 360.0 * (link_.place(0.0) - before);
+  } else if (link_.placed() && link_.watch(behind, config_.coupling_window, dt)) {
     events_.add({alarm::kSpindleSyncLost, config_.coupling_window, 360.0 * std::abs(behind)});
-  else if (link_.placed() && !link_.synchronous() && std::abs(behind) > kMostOff)
+  } else if (link_.placed() && !link_.synchronous() && std::abs(behind) > kMostOff) {
     link_.lose_place();
+  }
   const double ramp = std::abs(led_.rpm) / config_.acceleration;
   apart_s_ = turns && enable_ && !link_.synchronous() ? apart_s_ + dt : 0.0;
   if (config_.at_speed_timeout > 0.0 && apart_s_ > config_.at_speed_timeout + 2.0 * ramp && !raised_speed_) {

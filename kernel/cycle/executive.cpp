@@ -31,7 +31,10 @@ Cycle::Cycle(CycleParts parts)
   for (std::size_t i = 0; i < spindles_.size(); ++i)
     spindles_[i].configure(parts_.spindles[i], static_cast<int>(i));
   for (const axis::SpindleConfig& s : parts_.spindles)
-    if (s.axis >= 0) axes_[static_cast<std::size_t>(s.axis)].sleep();
+    if (s.axis >= 0) {
+      axis::Axis& a = axes_[static_cast<std::size_t>(s.axis)];
+      a.sleep(a.setpoint().x);
+    }
 }
 
 Cycle::~Cycle() = default;

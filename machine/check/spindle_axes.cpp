@@ -58,6 +58,7 @@ class SpindleAxis {
     if (a.drive != s_.drive) wrong("drive", finding::kSpindleAxisOther, {a.letter, number_, s_.drive});
     if (a.home.method != HomingMethod::none)
       wrong("home.method", finding::kSpindleAxisHome, {a.letter, number_});
+    if (a.brake.present()) wrong("brake", finding::kSpindleAxisBrake, {a.letter, number_});
     if (a.lead <= 0.0 || a.counts_per_rev <= 0 || !s_.has_encoder()) return;
     const double counts = 360.0 * a.counts_per_unit();
     if (std::abs(counts - static_cast<double>(s_.counts_per_rev)) > kSameCounts * counts)

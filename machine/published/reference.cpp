@@ -106,8 +106,10 @@ std::string Reference::default_cell(const Key& key, void* defaults) const {
       return static_cast<std::string*>(member)->empty() ? none : *static_cast<std::string*>(member);
     case KeyKind::choice:
       return std::string(key.choices[*static_cast<std::uint8_t*>(member)]);
-    case KeyKind::ratio:
-      return "[1, 1]";
+    case KeyKind::ratio: {
+      const auto& pair = *static_cast<std::array<std::int64_t, 2>*>(member);
+      return '[' + std::to_string(pair[0]) + ", " + std::to_string(pair[1]) + ']';
+    }
     default:
       return none;
   }

@@ -134,6 +134,35 @@ TEST(Coupling, leads_the_second_spindle_at_the_ratio_and_the_phase_that_are_prog
     }
 }
 
+TEST(Coupling, shows_how_far_the_second_spindle_is_off_its_angle) {
+  for (const CouplingBy by : {CouplingBy::setpoint, CouplingBy::measured}) {
+    Pair m(by);
+    const image::SpindleImage &leader = m.image.spindles[0], &follower = m.image.spindles[1];
+    m.spindles[0].order(SpindleMode::cw, 900.0);
+    m.couple(3, 2);
+    double farthest = 0.0, untrue = 0.0;
+    for (int n = 0; n < 6000; ++n) {
+      m.cycle();
+      if (!follower.coupled) continue;
+      farthest = std::max(farthest, std::abs(follower.phase_error_deg));
+      if (m.spindles[1].synchronous())
+        untrue = std::max(untrue, std::abs(follower.phase_error_deg - m.true_error()));
+    }
+    ASSERT_TRUE(follower.coupled && m.spindles[1].synchronous());
+    EXPECT_LE(farthest, 61.0) << "three places are equal: the nearest one is at most 60 degrees off";
+    EXPECT_LE(untrue, 1.0) << "counts, and what both turn in a cycle";
+    EXPECT_FALSE(leader.coupled);
+    m.load[1] = 0.05;
+    m.run(20);
+    m.load[1] = 0.0;
+    EXPECT_GT(follower.phase_error_deg, 0.2) << "a load holds it behind";
+    m.spindles[1].uncouple();
+    m.run(2);
+    EXPECT_FALSE(follower.coupled);
+    EXPECT_EQ(follower.phase_error_deg, 0.0);
+  }
+}
+
 TEST(Coupling, stays_in_step_while_the_first_spindle_changes_its_speed_and_stops) {
   for (const CouplingBy by : {CouplingBy::setpoint, CouplingBy::measured}) {
     Pair m(by, 2000.0, 6.0);

@@ -33,7 +33,7 @@ class Shared {
     a.slow_velocity = 20.0;
     a.homing.method = HomingMethod::none;
     axis.configure(a, 0);
-    axis.sleep();
+    axis.sleep(0.0);
     axis.request_power(true);
     permit(true);
     image.axis_count = image.spindle_count = 1;
@@ -54,8 +54,9 @@ class Shared {
     const bool on = c.power && !fault && s.drive.mode == c.mode;
     if (was_on && on && c.mode != was_mode) changed_under_power = true;
     if (on && c.mode == image::DriveMode::csp) {
-      if (!was_on) jump = std::max(jump, std::abs(static_cast<double>(c.position_counts) - position));
-      speed = (static_cast<double>(c.position_counts) - position) / 0.001;
+      const double target = static_cast<double>(c.position_counts) - shift;
+      if (!was_on) jump = std::max(jump, std::abs(target - position));
+      speed = (target - position) / 0.001;
     } else if (on) {
       speed += (c.velocity_counts_s - speed) * 0.2;
     } else {
@@ -65,14 +66,15 @@ class Shared {
     position += speed * 0.001;
     const auto whole = [](double at) { return std::floor((at - kMark) / kCounts); };
     if (marks && c.latch_arm && whole(before) != whole(position)) {
-      s.drive.latch_counts = static_cast<std::int64_t>(kMark + kCounts * whole(std::max(before, position)));
+      s.drive.latch_counts =
+          static_cast<std::int64_t>(shift + kMark + kCounts * whole(std::max(before, position)));
       ++s.drive.latch_sequence;
     }
     s.drive.online = online;
     s.drive.state = fault ? image::DriveState::fault
                     : on  ? image::DriveState::operation_enabled
                           : image::DriveState::switch_on_disabled;
-    s.drive.position_counts = std::llround(position);
+    s.drive.position_counts = std::llround(position + shift);
     was_on = on;
     was_mode = c.mode;
   }
@@ -119,6 +121,7 @@ class Shared {
   image::Reaction reaction = image::Reaction::none;
   std::vector<Event> events;
   double speed = 0.0, position = 0.0, jump = 0.0;
+  double shift = 0.0;  ///< of the counts, since the drive was switched on
   bool fault = false, online = true, marks = true, was_on = false, changed_under_power = false;
   image::DriveMode told_mode = image::DriveMode::none, was_mode = image::DriveMode::none;
   int shows = 0;
@@ -254,6 +257,85 @@ TEST(SpindleAxis, whose_drive_trips_stops_either_way_and_stays_off_when_it_is_ac
     EXPECT_EQ(m->position, before);
     EXPECT_TRUE(m->spindle.is_spindle());
   }
+}
+
+TEST(SpindleAxis, whose_drive_goes_away_is_a_spindle_and_finds_its_place_by_the_mark_again) {
+  // Cycles behind the order: while it turns down, changes its mode, is placed, and stands as the axis.
+  for (int after = 50; after < 4000; after += 211) {
+    Shared m;
+    m.spindle.order(SpindleMode::cw, 600.0);
+    m.run(600);
+    m.spindle.want_axis(true);
+    m.run(after);
+    const bool of_axis = m.image.spindles[0].is_axis;
+    m.online = false;
+    m.fault = true;  // it has no power meanwhile
+    m.run(100);
+    EXPECT_FALSE(m.spindle.wants_axis()) << after;
+    EXPECT_EQ(m.raised(alarm::kDriveOffline), of_axis) << after;
+    EXPECT_EQ(m.raised(alarm::kSpindleNoAxis), !of_axis) << after << ": it is said once";
+    m.speed = 0.0;
+    m.position += 1234.0;  // somebody turns the chuck, and the drive counts from another zero
+    m.shift = -98765.0;
+    m.online = true;
+    m.fault = false;
+    m.axis.reset();
+    m.spindle.reset();
+    const double before = m.position;
+    m.run(3000);
+    EXPECT_EQ(m.position, before) << after << ": nothing turns unasked";
+    EXPECT_TRUE(m.spindle.is_spindle()) << after;
+    EXPECT_TRUE(m.axis.asleep()) << after;
+    m.events.clear();
+    m.axis.request_power(true);
+    ASSERT_TRUE(m.becomes_axis()) << after;
+    EXPECT_EQ(m.axis.setpoint().x, 0.0) << after;
+    EXPECT_LE(Shared::off(m.degrees(), 0.0), 0.11) << after;
+    EXPECT_TRUE(m.events.empty()) << after;
+  }
+}
+
+TEST(SpindleAxis, that_is_told_to_become_one_without_its_drive_says_so_at_once) {
+  Shared m;
+  m.online = false;
+  m.run(10);
+  m.spindle.want_axis(true);
+  m.run(10);
+  EXPECT_TRUE(m.raised(alarm::kSpindleNoAxis));
+  EXPECT_TRUE(m.spindle.is_spindle());
+}
+
+TEST(SpindleAxis, that_sags_without_power_goes_on_where_it_was_told_to_stand) {
+  Shared m;
+  ASSERT_TRUE(m.becomes_axis());
+  ASSERT_TRUE(m.axis.move_to(90.0, 90.0));
+  ASSERT_TRUE(m.until([&] { return !m.axis.moving() && m.axis.in_position(); }));
+  m.spindle.want_axis(false);
+  ASSERT_TRUE(m.until([&] { return !m.was_on; }));
+  m.position += 7.0;
+  ASSERT_TRUE(m.until([&] { return m.spindle.is_spindle(); }));
+  EXPECT_EQ(m.axis.setpoint().x, 90.0);
+  ASSERT_TRUE(m.becomes_axis());
+  EXPECT_LE(Shared::off(m.degrees(), 90.0), 0.11);
+}
+
+TEST(SpindleAxis, whose_feed_is_withdrawn_on_the_way_to_its_place_waits_and_goes_on) {
+  Shared m;
+  const image::Place feed = image::at(image::field(image::kAxisFields, "feed_enable"), image::axis_base(0));
+  m.spindle.order(SpindleMode::cw, 300.0);
+  m.run(500);
+  m.spindle.want_axis(true);
+  ASSERT_TRUE(m.until([&] { return m.image.spindles[0].is_axis; }));
+  m.position += 20.0;  // without power, by hand
+  ASSERT_TRUE(m.until([&] { return m.axis.moving(); }));
+  m.image.packets.set_bit(feed, false);
+  m.run(2000);
+  EXPECT_FALSE(m.axis.moving());
+  EXPECT_FALSE(m.spindle.is_axis());
+  m.image.packets.set_bit(feed, true);
+  ASSERT_TRUE(m.until([&] { return m.spindle.is_axis(); }));
+  EXPECT_LE(Shared::off(m.degrees(), 0.0), 0.11);
+  EXPECT_TRUE(m.events.empty());
 }
 
 TEST(SpindleAxis, loses_its_power_in_an_emergency_stop_in_every_phase_of_the_change) {

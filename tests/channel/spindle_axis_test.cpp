@@ -115,6 +115,25 @@ TEST(SpindleAxisProgram, is_a_spindle_at_rest_behind_its_end_a_stop_a_reset_and_
   }
 }
 
+TEST(SpindleAxisProgram, that_is_stopped_or_reset_in_any_phase_of_the_change_is_a_spindle_at_rest) {
+  for (const RequestKind kind : {RequestKind::stop, RequestKind::reset})
+    for (double after = 0.02; after < 2.5; after += 0.173) {
+      Turning rig("S600 M3\nG1 X1 F600\nM70\nG1 C720 F3600\nM30\n");
+      rig.start();
+      ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::running && rig.x() >= 1.0; }));
+      rig.run(after);
+      ASSERT_EQ(rig.ask(kind), cycle::Refusal::none) << after;
+      ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::idle && rig.is_spindle(); })) << after;
+      EXPECT_EQ(rig.alarm_list(), "") << after;
+      // What turned before the change turns on behind a stop, as behind any other.
+      if (rig.image().spindles[0].running && kind == RequestKind::stop) continue;
+      ASSERT_TRUE(rig.until([&] { return std::abs(rig.rpm()) < 1.0; })) << after;
+      const double stood = rig.drives.turns;
+      rig.run(0.3);
+      EXPECT_NEAR(rig.drives.turns, stood, 0.01) << after;
+    }
+}
+
 TEST(SpindleAxisProgram, whose_drive_trips_as_an_axis_stops_all_and_turns_nothing_when_it_is_acknowledged) {
   Turning rig("M70\nG1 X100 C720 F600\nM30\n");
   rig.start();

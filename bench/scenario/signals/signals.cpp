@@ -77,6 +77,9 @@ constexpr struct {
     {"actual", "act", "rpm", false, [](const SpindleImage& s) { return s.actual_rpm; }},
     {"running", "", "", true, [](const SpindleImage& s) { return on(s.running); }},
     {"at_speed", "", "", true, [](const SpindleImage& s) { return on(s.at_speed); }},
+    {"is_axis", "", "", true, [](const SpindleImage& s) { return on(s.is_axis); }},
+    {"coupled", "", "", true, [](const SpindleImage& s) { return on(s.coupled); }},
+    {"phase_error", "", "deg", false, [](const SpindleImage& s) { return s.phase_error_deg; }},
 };
 
 constexpr struct {
@@ -117,6 +120,11 @@ constexpr QuantityRow kQuantities[] = {
      "состояние по CiA 402: operation_enabled, fault, offline ..."},
     {"S.command, S.actual", "rpm", "of the spindle; S2. of the second", "шпинделя; S2. второго"},
     {"S.running, S.at_speed", "", "on or off", "on или off"},
+    {"S.is_axis, S.coupled", "",
+     "it is its rotary axis; it is held to the angle of the first spindle: on or off",
+     "работает как поворотная ось; удерживается по углу первого шпинделя: on или off"},
+    {"S.phase_error", "deg", "of a spindle that is coupled: how far it is behind that angle",
+     "связанного шпинделя: насколько он отстаёт от этого угла"},
     {"NC.line, NC.blocks, NC.tool, NC.starved", "", "of the program of process 1; NC2. of the second ...",
      "программы процесса 1; NC2. второго ..."},
     {"NC.feed", "mm/s", "speed along the path", "скорость по контуру"},

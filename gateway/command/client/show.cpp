@@ -127,6 +127,9 @@ const Entry kInGear{"client.in-gear", "{0}, gear {1}", "{0}, ступень {1}"
 const Entry kNoGear{"client.no-gear", "{0}, in no gear", "{0}, ступень не включена"};
 const Entry kAtSpeed{"client.at-speed", "{0}, at speed", "{0}, частота достигнута"};
 
+const Entry kIsAxis{"client.spindle-is-axis", "{0}, it is axis {1}", "{0}, работает как ось {1}"};
+const Entry kPhaseError{"client.phase-error", "{0}, phase error {1}°", "{0}, ошибка по углу {1}°"};
+
 template <std::size_t N>
 std::string people_read(const Word (&table)[N], const std::string& word) {
   if (text::user_language() != text::Language::russian) return word;
@@ -290,6 +293,10 @@ std::string spindle_words(const json& sp) {
   }
   if (const json& gear = sp.value("gear", json()); gear.is_string())
     words = gear == "" ? say(kNoGear, {words}) : say(kInGear, {words, gear.get<std::string>()});
+  if (const json& axis = sp.value("axis", json()); axis.is_string())
+    words = say(kIsAxis, {words, axis.get<std::string>()});
+  if (const json& off = sp.value("phase_error_deg", json()); off.is_number())
+    words = say(kPhaseError, {words, fixed(off.get<double>(), 2)});
   return supplier != "drive" && sp.value("at_speed", false) ? say(kAtSpeed, {words}) : words;
 }
 

@@ -326,13 +326,12 @@ inline constexpr image::AlarmRow kAxisRows[] = {
     {alarm::kSpindleNoAxis,
      image::Reaction::stop_on_path,
      image::ResetCondition::reset,
-     {"spindle.no_axis", "{0}: it has not become its axis within {2} s; it stays a spindle at rest",
-      "{0}: не перешёл в режим оси за {2} с; остаётся неподвижным шпинделем"},
-     "See whether the PLC enables spindle and axis and permits the axis' feed, whether the drives are on, "
-     "and "
-     "whether the drive has a zero mark and the mode csp.",
-     "Проверьте, разрешает ли ПЛК шпиндель, ось и подачу оси, включены ли приводы, есть ли у привода нулевая "
-     "метка и режим csp."},
+     {"spindle.no_axis", "{0}: it has not become its axis, given up after {1} s; it stays a spindle at rest",
+      "{0}: не перешёл в режим оси, попытка прекращена через {1} с; остаётся неподвижным шпинделем"},
+     "See whether its drive answers, whether the PLC enables spindle and axis and permits the axis' feed, "
+     "whether the drives are on, and whether the drive has a zero mark and the mode csp.",
+     "Проверьте, отвечает ли привод, разрешает ли ПЛК шпиндель, ось и подачу оси, включены ли приводы, есть "
+     "ли у привода нулевая метка и режим csp."},
     {alarm::kSpindleIsAxis,
      image::Reaction::stop_on_path,
      image::ResetCondition::reset,

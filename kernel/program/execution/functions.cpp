@@ -201,6 +201,7 @@ void Execution::end_function(int code, const MRule* rule, int column) {
   if (rule->action == MAction::spindle_stop || rule->action == MAction::spindle_orient)
     motion_.turn_spindle(mode_of(rule->action));
   emit(MFunction{code, true});
+  if (rule->action == MAction::none) change_spindle(code, column);
   switch (rule->action) {
     case MAction::stop:
       emit(Stop{false});

@@ -12,10 +12,11 @@ namespace {
 constexpr int kBits = 32;
 
 std::optional<DriveSeat> seat_of(const machine::MachineConfig& m, const std::string& node) {
-  for (std::size_t a = 0; a < m.axes.size(); ++a)
-    if (m.axes[a].drive == node) return DriveSeat{false, a};
+  // The drive of a spindle that becomes an axis is the spindle's.
   for (std::size_t s = 0; s < m.spindles.size(); ++s)
     if (m.spindles[s].drive == node) return DriveSeat{true, s};
+  for (std::size_t a = 0; a < m.axes.size(); ++a)
+    if (m.axes[a].drive == node) return DriveSeat{false, a};
   return std::nullopt;
 }
 

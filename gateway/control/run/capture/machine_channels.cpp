@@ -51,6 +51,11 @@ constexpr std::array kSpindleFields = std::to_array<Field<SpindleImage>>({
     {"cmd", "rpm", [](const SpindleImage& s) { return s.command_rpm; }},
     {"act", "rpm", [](const SpindleImage& s) { return s.actual_rpm; }},
     {"angle", "deg", [](const SpindleImage& s) { return s.angle_deg; }},
+    {"axis", "", [](const SpindleImage& s) { return on(s.is_axis); }},
+    {"phase_error", "deg",
+     [](const SpindleImage& s) {
+       return s.coupled ? s.phase_error_deg : std::numeric_limits<double>::quiet_NaN();
+     }},
 });
 constexpr std::array kProcessFields = std::to_array<Field<ProcessStatus>>({
     {"feed", "mm/s", [](const ProcessStatus& p) { return p.feed_mm_s; }},

@@ -134,6 +134,8 @@ json json_of(const SpindleReport& r) {
           {"actual_rpm", measure(r.spindle.actual_rpm)},
           {"angle_deg", measure(r.spindle.angle_deg)},
           {"at_speed", r.spindle.at_speed},
+          {"axis", r.axis.empty() ? json() : json(r.axis)},
+          {"phase_error_deg", r.spindle.coupled ? json(measure(r.spindle.phase_error_deg)) : json()},
           {"rests", r.rests ? json(*r.rests) : json()},
           {"gear", !r.gears ? json() : json(r.gear)},
           {"drive", outputs ? json() : json(kDriveStates[static_cast<int>(r.spindle.drive.state)])}};

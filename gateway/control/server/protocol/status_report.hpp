@@ -59,6 +59,7 @@ struct SpindleReport {
   std::string place;          ///< "can.spindle", "cabinet.vfd", or the point of its speed
   bool gears = false;         ///< it has gear ranges
   std::string gear;           ///< name of the one in force; empty: none, or it changes
+  std::string axis;           ///< letter of the rotary axis that it is now; empty: it is a spindle
   std::optional<bool> rests;  ///< none: its drive does not answer
 };
 

@@ -107,6 +107,7 @@ SpindleReport spindle_report(const machine::MachineConfig& m, const image::Proce
   const machine::SpindleConfig& s = m.spindles[index];
   SpindleReport report;
   report.gears = !s.gears.empty();
+  if (image.spindles[index].is_axis) report.axis = s.axis;
   const image::Place gear =
       image::at(image::field(image::kSpindleFields, "gear"), image::spindle_base(static_cast<int>(index)));
   if (const auto number = static_cast<std::size_t>(image.packets.number(gear));
