@@ -79,9 +79,8 @@ inline constexpr text::Entry kSpindleAxisHome{
     "ось {0}: в неё переходит шпиндель {1}, и нулевая метка ему известна: home.method = \"none\""};
 inline constexpr text::Entry kSpindleAxisBrake{
     "machine.spindle_axis_brake",
-    "axis {0}: spindle {1} becomes it and would turn against its brake: it has none",
-    "ось {0}: в неё переходит шпиндель {1}, и он вращался бы с включённым тормозом: тормоза у неё быть не "
-    "должно"};
+    "axis {0}: spindle {1} becomes it, and would turn against its brake: leave the brake out",
+    "ось {0}: в неё переходит шпиндель {1}, и он вращался бы с включённым тормозом: уберите тормоз"};
 inline constexpr text::Entry kSpindleAxisCounts{
     "machine.spindle_axis_counts",
     "axis {0}: {1} counts in 360°, and spindle {2}, which becomes it, has counts_per_rev = {3}",

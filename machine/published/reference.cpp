@@ -108,6 +108,7 @@ std::string Reference::default_cell(const Key& key, void* defaults) const {
       return std::string(key.choices[*static_cast<std::uint8_t*>(member)]);
     case KeyKind::ratio: {
       const auto& pair = *static_cast<std::array<std::int64_t, 2>*>(member);
+      if (pair[0] == 0 && pair[1] == 0) return none;
       return '[' + std::to_string(pair[0]) + ", " + std::to_string(pair[1]) + ']';
     }
     default:

@@ -246,7 +246,7 @@ constexpr text::Entry kMessages[] = {
      "{0}: угол {1} не помещается между соседними участками контура"},
     {"P114", "the skip level {0} is none: there are 0 to 9",
      "уровня пропуска {0} нет: есть уровни от 0 до 9"},
-    {"P756", "axis {0} is a spindle now: M{1} makes it an axis first",
+    {"P759", "axis {0} is a spindle now: M{1} makes it an axis first",
      "ось {0} сейчас работает как шпиндель: сначала переведите её в режим оси функцией M{1}"},
     {"P757",
      "the spindle is axis {0} now: it neither turns nor leads a thread, a feed per revolution or another "

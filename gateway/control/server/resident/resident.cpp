@@ -241,6 +241,13 @@ program::Position Resident::position() {
   return at;
 }
 
+/// The first spindle of the process is its rotary axis.
+bool Resident::spindle_is_axis(int process) const {
+  const machine::SpindleConfig* spindle = control_.machine().spindle_of_process(process);
+  if (spindle == nullptr) return false;
+  return image_.spindles[static_cast<std::size_t>(spindle - control_.machine().spindles.data())].is_axis;
+}
+
 Resident::TriedBlock Resident::try_block(int process, const std::string& block) {
   const program::Position at = position();
   std::optional<program::Interpreter> trial;
@@ -248,6 +255,7 @@ Resident::TriedBlock Resident::try_block(int process, const std::string& block) 
     const auto lock = control_.stop_reading();
     trial = control_.process(process).manual_interpreter(at);
   }
+  trial->set_spindle_axis(spindle_is_axis(process));
   trial->mdi(block);
   TriedBlock tried;
   std::optional<text::Finding> failed;

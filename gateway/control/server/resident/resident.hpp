@@ -227,6 +227,7 @@ class Resident {
   Work prove_later(Proof proof);
   Work save_later();
   program::Position position();
+  bool spindle_is_axis(int process) const;
   std::uint32_t homed();
 
   Announce announce_;
