@@ -57,7 +57,7 @@ TEST_F(SimulatedDrives, a_stepper_and_a_spindle_say_what_they_are_and_which_mode
   EXPECT_EQ(nodes[0]["device"], "stepper drive (CiA 402)");
   EXPECT_EQ(nodes[0]["modes"], json::parse(R"(["pp","pv","hm","ip","csp","csv"])"));
   EXPECT_EQ(nodes[1]["device"], "frequency converter (CiA 402)");
-  EXPECT_EQ(nodes[1]["modes"], json::parse(R"(["vl","pv","tq","hm","csv","cst"])"));
+  EXPECT_EQ(nodes[1]["modes"], json::parse(R"(["vl","pv","tq","hm","csp","csv","cst"])"));
   EXPECT_EQ(tool("sdo $BUS 1 write 6060 4 --i-may-move --listen 0.1").code, 1)
       << "a stepper has no torque mode";
   EXPECT_EQ(value(1, "608F:1"), 51200);
