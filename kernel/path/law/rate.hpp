@@ -199,7 +199,8 @@ class StraightRamp {
   bool move_to(const CourseView& view, const RateLimits& limits, double s, int* places) noexcept;
   bool look(const MotionState& motion, double jerk) noexcept;
   double fastest_ahead(const CourseView& view, const RateLimits& limits, int& places) noexcept;
-  bool begins_straight(const RateLimits& limits, const CoursePoint& law, double rate) noexcept;
+  bool begins_straight(const RateLimits& limits, const CoursePoint& law, double rate,
+                       MotionState& along) noexcept;
   bool straight_at(double in, const RateLimits& limits) const noexcept;
   bool aim(const CourseView& view, const RateLimits& limits, const MotionState& now, double wanted,
            const Box& box, int& places) noexcept;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kernel/path/law/rate.hpp"
+#include "kernel/path/shape/piece.hpp"
 
 namespace servogate::path {
 namespace {
@@ -20,11 +21,11 @@ bool line_near(const CourseView& view, const RateLimits& limits, std::int64_t m)
     Interval interval;
     if (!interval.take(view, m, limits)) return false;
     const Vector v = interval.at(interval.seconds(), 1.0, 0.0, limits.axes).v;
-    double size = 0.0, aside = 0.0;
-    for (const double x : v) size += x * x;
-    if (!(size > 0.0)) return false;
+    const double speed = norm(v, limits.axes);
+    if (!(speed > 0.0)) return false;
+    double aside = 0.0;
     for (std::size_t i = 0; i < v.size(); ++i) {
-      const double x = v[i] / std::sqrt(size), d = x - before[i];
+      const double x = v[i] / speed, d = x - before[i];
       aside += d * d;
       before[i] = x;
     }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "kernel/path/law/rate.hpp"
+#include "kernel/path/shape/piece.hpp"
 
 namespace servogate::path {
 namespace {
@@ -17,10 +18,10 @@ constexpr double kSame = 1e-12;        // mm
 constexpr double kBesideBreak = 1e-9;  // s from where the jerk changes
 constexpr int kRounds = 60;            // of a place's search
 
-double length(const Vector& v, int axes) {
-  double square = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) square += v[i] * v[i];
-  return std::sqrt(square);
+double dot(const Vector& a, const Vector& b, int axes) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) sum += a[i] * b[i];
+  return sum;
 }
 
 /// What the axes allow in a direction: across it the path is hardly bent, and what that takes is jerk.
@@ -125,8 +126,8 @@ double StraightRamp::fastest_ahead(const CourseView& view, const RateLimits& lim
 
 bool StraightRamp::straight_at(double in, const RateLimits& limits) const noexcept {
   const Vector v = interval_.at(in, 1.0, 0.0, limits.axes).v;
-  double along = 0.0, aside = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) along += v[i] * direction_[i];
+  const double along = dot(v, direction_, limits.axes);
+  double aside = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
     const double d = v[i] - along * direction_[i];
     aside += d * d;
@@ -134,19 +135,17 @@ bool StraightRamp::straight_at(double in, const RateLimits& limits) const noexce
   return along > kSlow && std::sqrt(aside) <= kBent * along;
 }
 
-/// Takes direction and place; false: the law rests, or the bend takes much of an axis.
-bool StraightRamp::begins_straight(const RateLimits& limits, const CoursePoint& law, double rate) noexcept {
-  const double speed = length(law.v, limits.axes);
-  if (!(speed > kSlow)) return false;
-  double acceleration = 0.0;
-  origin_ = 0.0;
+/// Takes direction and place; `along` is the law's motion in that direction. False: the law rests, or the
+/// bend takes much of an axis.
+bool StraightRamp::begins_straight(const RateLimits& limits, const CoursePoint& law, double rate,
+                                   MotionState& along) noexcept {
+  along.v = norm(law.v, limits.axes);
+  if (!(along.v > kSlow)) return false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) direction_[i] = law.v[i] / along.v;
+  along.a = dot(direction_, law.a, limits.axes);
+  origin_ = along.s = dot(direction_, law.x, limits.axes);
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
-    direction_[i] = law.v[i] / speed;
-    acceleration += direction_[i] * law.a[i];
-    origin_ += direction_[i] * law.x[i];
-  }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
-    const double aside = (law.a[i] - acceleration * direction_[i]) * rate * rate;
+    const double aside = (law.a[i] - along.a * direction_[i]) * rate * rate;
     if (!(std::abs(aside) <= kBent * limits.limits[i].acceleration)) return false;
   }
   return true;
@@ -177,17 +176,12 @@ bool StraightRamp::plan(const CourseView& view, const RateLimits& limits, const 
   if (!interval_.take(view, from.knot, limits)) return false;
   in_ = from.time.since(interval_.begin());
   if (!(in_ >= 0.0 && in_ <= interval_.seconds())) return false;
-  const CoursePoint law = interval_.at(in_, 1.0, 0.0, limits.axes);
-  if (!begins_straight(limits, law, from.rate)) return false;
+  MotionState law{};
+  if (!begins_straight(limits, interval_.at(in_, 1.0, 0.0, limits.axes), from.rate, law)) return false;
   take_along(limits.axes);
-  double speed = 0.0, acceleration = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
-    speed += direction_[i] * law.v[i];
-    acceleration += direction_[i] * law.a[i];
-  }
   const Box box = box_along(direction_, limits, share);
-  const MotionState now{0.0, forwards_ * from.rate * speed,
-                        forwards_ * (acceleration * from.rate * from.rate + speed * from.slope)};
+  const MotionState now{0.0, forwards_ * from.rate * law.v,
+                        forwards_ * (law.a * from.rate * from.rate + law.v * from.slope)};
   const double natural = now.v + 0.5 * now.a * std::abs(now.a) / box.jerk;
   if (!(now.v >= 0.0 && natural >= 0.0)) return false;
   first_ = from.knot;
