@@ -80,7 +80,7 @@ Execution::Execution(const Dialect& dialect, MachineModel machine, Tables tables
                      ProgramText text, ProgramLoader loader, const Position& start, int process)
     : data_(dialect, std::move(machine), std::move(tables), std::move(file_name), std::move(text),
             std::move(loader), start, process) {
-  stay_spindle();
+  set_spindle_axis(false);
   reset();
   apply_power_on();
 }
@@ -328,7 +328,7 @@ void Execution::finish(bool rewind) {
   contour_.settle();
   end_contour_modes();
   emit(End{rewind});
-  stay_spindle();
+  set_spindle_axis(false);
   data_.last = Step(data_.queue.commands.back());
   if (!rewind) return;
   reset();

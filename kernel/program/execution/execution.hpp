@@ -142,6 +142,9 @@ class Execution : public ValueSource {
   /// The end of the main program; `rewind`: modes and frames are as after power-on then.
   void finish(bool rewind);
 
+  /// Whether the first spindle is its rotary axis from here on; its place is where the program knows it.
+  void set_spindle_axis(bool on);
+
  private:
   // language.cpp
   void follow_language();
@@ -192,7 +195,6 @@ class Execution : public ValueSource {
   void spindle_word(const BlockWords& words, const MRule* start, const Word* start_word);
   void end_function(int code, const MRule* rule, int column);
   void change_spindle(int code, int column);
-  void stay_spindle();
   void tool_words(const BlockWords& words);
   void replace_worn_out(const Word& word, int chosen);
   void change_tool();

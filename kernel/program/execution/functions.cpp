@@ -74,15 +74,14 @@ void Execution::change_spindle(int code, int column) {
     fail(Fault::spindle_axis_coupled, column, {machine_.axes[static_cast<std::size_t>(axis)].letter});
   motion_.end_profile();
   emit(SpindleAxis{on});
-  stay_spindle();
-  motion.spindle_is_axis = on;
+  set_spindle_axis(on);
   motion.spindle = SpindleMode::stop;
 }
 
 /// The axis that it may become stands where the program knows it to stand.
-void Execution::stay_spindle() {
+void Execution::set_spindle_axis(bool on) {
   if (machine_.spindle_axis < 0) return;
-  state_.motion.spindle_is_axis = false;
+  state_.motion.spindle_is_axis = on;
   state_.motion.spindle_axis_place = state_.frames.machine[static_cast<std::size_t>(machine_.spindle_axis)];
 }
 

@@ -91,12 +91,7 @@ void Interpreter::set_switches(const OperatorSwitches& switches) {
   state.skip_levels |= switches.skip_levels;
   state.motion.dry_run = state.motion.dry_run || switches.dry_run;
 }
-void Interpreter::set_spindle_axis(bool on) {
-  State& state = impl_->run.state();
-  const int axis = machine().spindle_axis;
-  state.motion.spindle_is_axis = on && axis >= 0;
-  if (axis >= 0) state.motion.spindle_axis_place = state.frames.machine[static_cast<std::size_t>(axis)];
-}
+void Interpreter::set_spindle_axis(bool on) { impl_->run.set_spindle_axis(on); }
 int Interpreter::origin(int axis) const {
   return impl_->run.state().frames.origin[static_cast<std::size_t>(axis)];
 }
