@@ -91,14 +91,7 @@ void read_block(const Dialect& dialect, const AxisLetters& axes, std::string_vie
 }
 
 void read_any_block(const Dialect& dialect, const AxisLetters& axes, std::string_view line, Block& block) {
-  block.line = line;
-  block.kind = BlockKind::empty;
-  block.sync = Sync::standard;
-  block.skip = block.trailing_comment = false;
-  block.skip_level = 0;
-  block.number = -1;
-  block.number_column = 0;
-  block.count = block.g_count = block.argument_count = 0;
+  begin_block(block, line);
   if (holds_nothing(dialect.lexis, line, skip_spaces(line, 0))) return;
   if (line.size() > dialect.max_block_characters &&
       (characters(line) > dialect.max_block_characters || line.size() > 4 * dialect.max_block_characters))

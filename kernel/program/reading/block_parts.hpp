@@ -12,6 +12,17 @@ namespace servogate::program {
 inline bool name_character(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 /// Throws: `c` belongs to the prefix and does not stand in its order.
 [[noreturn]] void fail_prefix(const Dialect& dialect, int column, char c);
+/// A block of this line, without anything read of it.
+inline void begin_block(Block& block, std::string_view line) {
+  block.line = line;
+  block.kind = BlockKind::empty;
+  block.sync = Sync::standard;
+  block.skip = block.trailing_comment = false;
+  block.skip_level = 0;
+  block.number = -1;
+  block.number_column = 0;
+  block.count = block.g_count = block.argument_count = 0;
+}
 /// A block of a number, at most one G word and words whose numbers are written out, each letter once, as
 /// read_any_block() would read it, only sooner. False: it is another one, or a wrong one; `block` means
 /// nothing then. Never throws.
