@@ -38,6 +38,13 @@ class Shared {
     permit(true);
     image.axis_count = image.spindle_count = 1;
   }
+  /// It turns, and was told to become the axis so many cycles ago.
+  void is_on_its_way(int cycles) {
+    spindle.order(SpindleMode::cw, 600.0);
+    run(600);
+    spindle.want_axis(true);
+    run(cycles);
+  }
   void permit(bool on) {
     image.packets.set_bit(image::field(image::kMachineFields, "power_on", image::kMachineBase), on);
     const std::uint32_t s = image::spindle_base(0), a = image::axis_base(0);
@@ -263,10 +270,7 @@ TEST(SpindleAxis, whose_drive_goes_away_is_a_spindle_and_finds_its_place_by_the_
   // Cycles behind the order: while it turns down, changes its mode, is placed, and stands as the axis.
   for (int after = 50; after < 4000; after += 211) {
     Shared m;
-    m.spindle.order(SpindleMode::cw, 600.0);
-    m.run(600);
-    m.spindle.want_axis(true);
-    m.run(after);
+    m.is_on_its_way(after);
     const bool of_axis = m.image.spindles[0].is_axis;
     m.online = false;
     m.fault = true;  // it has no power meanwhile
@@ -342,10 +346,7 @@ TEST(SpindleAxis, loses_its_power_in_an_emergency_stop_in_every_phase_of_the_cha
   // Cycles behind the order: while it turns down, is placed, is powered, and stands as the axis.
   for (int after = 0; after < 4000; after += 97) {
     Shared m;
-    m.spindle.order(SpindleMode::cw, 600.0);
-    m.run(600);
-    m.spindle.want_axis(true);
-    m.run(after);
+    m.is_on_its_way(after);
     m.reaction = image::Reaction::stop_and_power_off;
     m.run(3000);
     EXPECT_FALSE(m.image.spindles[0].drive_command.power) << after;
@@ -380,10 +381,7 @@ TEST(SpindleAxis, that_cannot_become_one_says_so_and_stays_a_spindle_at_rest) {
 TEST(SpindleAxis, that_is_called_back_on_its_way_is_a_spindle_at_rest) {
   for (int after = 1; after < 3000; after += 61) {
     Shared m;
-    m.spindle.order(SpindleMode::cw, 600.0);
-    m.run(600);
-    m.spindle.want_axis(true);
-    m.run(after);
+    m.is_on_its_way(after);
     ASSERT_TRUE(m.becomes_spindle()) << after;
     m.run(2000);
     EXPECT_TRUE(m.spindle.zero_speed()) << after;
