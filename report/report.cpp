@@ -159,6 +159,21 @@ Json to_json(const AxisReport& a) {
   return out;
 }
 
+Json to_json(const TouchGroup& t) {
+  const Repeatability r = repeatability(t.places);
+  Json out{{"axis", t.letter},
+           {"unit", t.unit},
+           {"diameter", t.diameter},
+           {"direction", t.direction},
+           {"feed_mm_min", rounded(t.feed_mm_min)},
+           {"mean", rounded(r.mean)},
+           {"spread", rounded(r.spread)},
+           {"deviation", rounded(r.deviation)},
+           {"places", Json::array()}};
+  for (const double place : t.places) out["places"].push_back(rounded(place));
+  return out;
+}
+
 Json to_json(const SegmentReport& s) {
   Json out{{"name", s.name},
            {"load", rounded(s.load)},
@@ -250,6 +265,7 @@ Json json_of(const Report& r, Language language) {
   for (const ForceEntry& f : r.forces) out["forces"].push_back({{"name", f.name}, {"value", f.value}});
   out["axes"] = Json::object();
   for (const AxisReport& a : r.axes) out["axes"][a.letter] = to_json(a);
+  for (const TouchGroup& t : r.touches) out["touches"].push_back(to_json(t));
   out["virtual_speed"] = rounded(r.virtual_speed);
   out["cycle_us"] = to_json(r.cycle_us);
   if (r.lateness_us) out["lateness_us"] = to_json(*r.lateness_us);

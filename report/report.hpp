@@ -9,6 +9,7 @@
 #include "firmware_if/image/alarms/alarm_table.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "report/statistics.hpp"
+#include "report/touches.hpp"
 
 namespace servogate::report {
 
@@ -145,7 +146,8 @@ struct Report {
   std::vector<AlarmEntry> alarms;
   std::vector<ForceEntry> forces;  ///< held from before the first motion to the end
   std::vector<AxisReport> axes;
-  double virtual_speed = 0.0;  ///< simulated seconds per second
+  std::vector<TouchGroup> touches;  ///< of probes
+  double virtual_speed = 0.0;       ///< simulated seconds per second
   Quantiles cycle_us;
   std::optional<Quantiles> lateness_us;  ///< real time only
   std::vector<PhaseReport> phases;

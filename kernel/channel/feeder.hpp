@@ -16,6 +16,7 @@
 #include "kernel/channel/motion/path_elements.hpp"
 #include "kernel/channel/motion/tap_commands.hpp"
 #include "kernel/channel/motion/touch.hpp"
+#include "kernel/channel/motion/touch_log.hpp"
 #include "kernel/channel/motion/ways.hpp"
 #include "kernel/channel/neighbours.hpp"
 #include "kernel/channel/program_texts.hpp"
@@ -135,6 +136,8 @@ class Feeder {
   }
   /// What the last such start has found.
   const Touches& touches() const noexcept { return touches_; }
+  /// All that its measuring motions have found.
+  const TouchLog& touch_log() const noexcept { return touch_log_; }
   /// A run is being read or about to be: load() has to wait. False once its last motion has been read.
   bool reads() const noexcept {
     return state_ == State::feeding || state_ == State::syncing || state_ == State::probing || ordered();
@@ -229,6 +232,8 @@ class Feeder {
   std::optional<TouchOrder> touch_order_;
   std::optional<Touch> touch_;  ///< of the run
   Touches touches_;
+  TouchPlace measuring_;  ///< of the measuring motion under way
+  TouchLog touch_log_;
   std::optional<program::Interpreter> interpreter_;
   std::optional<program::Interpreter> manual_;  ///< modes that MDI left, between two blocks
   bool manual_runs_ = false;                    ///< interpreter_ runs a typed block

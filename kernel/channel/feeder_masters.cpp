@@ -47,6 +47,11 @@ void Feeder::tap() {
 void Feeder::probe(const program::Command& command) {
   event(EventKind::probe_arm, command, {});
   ways_.bar();
+  const auto& probe = std::get<program::Probe>(command.what);
+  measuring_ = {position_, probe.to, {}, probe.feed_mm_min};
+  const path::Vector from = planner_.position();
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i)
+    measuring_.from[static_cast<std::size_t>(axes_.machine[i])] = from[i];
   if (!move(command)) return;
   event(EventKind::probe_end, command, {});
   state_ = State::probing;
@@ -57,6 +62,8 @@ void Feeder::take_touch(const FeederOrder& order) {
   position_ = order.position;
   planner_.restart(elements_.path_position(position_));
   ways_.restart();
+  measuring_.at = order.touched;
+  touch_log_.put(measuring_);
   if (!touch_) return interpreter_->probed(order.touched);
   touch_->touched(order.touched[static_cast<std::size_t>(touch_->axis())]);
   touches_.put(generation_, *touch_);

@@ -65,6 +65,22 @@ function alarms() {
   });
   fill("alarms", el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows)));
 }
+/** Places that a probe has touched, and how well they repeat: a dot for each touch. */
+function touches() {
+  const list = report().touches || [];
+  $("touch-section").hidden = !list.length;
+  const small = (t, v) => t.unit === "deg" ? num(v * 3600, 3) + unit("arcsec") : num(v * 1000, 3) + " " + unit("µm");
+  const strip = t => {
+    const most = t.places.reduce((m, p) => Math.max(m, Math.abs(p - t.mean)), 0);
+    const dots = t.places.slice(0, 500).map(p => el("i", {style: `left:${50 + (most > 0 ? 47 * (p - t.mean) / most : 0)}%`}));
+    return [el("div", {class: "strip"}, ...dots), el("div", {class: "note"}, "± " + small(t, most))];
+  };
+  const rows = list.map(t => el("tr", {}, el("th", {}, t.axis + (t.direction > 0 ? "+" : "−"), t.diameter ? el("span", {class: "note"}, " " + tr("ofRadius")) : null),
+    ...[fixed(t.mean, 4) + " " + unit(t.unit), num(t.feed_mm_min, 4) + " " + unit("mm/min"), String(t.places.length), small(t, t.spread), small(t, t.deviation)].map(v => el("td", {class: "figure"}, v)),
+    el("td", {}, ...strip(t))));
+  const heads = [tr("axis"), ...["touch.place", "feedPath", "touch.count", "touch.spread", "touch.deviation"].map(k => tr(k)), tr("touch.each")];
+  fill("touches", el("table", {}, el("thead", {}, el("tr", {}, ...heads.map((h, k) => el("th", {class: k && k < 6 ? "figure" : ""}, h)))), el("tbody", {}, ...rows)));
+}
 /** Errors for which the program was not begun. */
 function findings() {
   const R = report();

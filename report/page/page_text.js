@@ -6,6 +6,12 @@ const TEXTS = {
   errorsFound: ["What was found in the program", "Что найдено в программе"],
   alarms: ["Alarms", "Аварии"],
   forced: ["Forced from outside during the whole run", "Удерживалось извне в течение всего прогона"],
+  touches: ["Touches of the probe", "Касания щупа"],
+  "touch.place": ["Mean place, machine coordinates", "Среднее положение, координаты станка"],
+  "touch.count": ["Touches", "Касаний"],
+  "touch.spread": ["Spread", "Размах"],
+  "touch.deviation": ["Standard deviation", "Среднее квадр. отклонение"],
+  "touch.each": ["Each touch, off the mean", "Каждое касание относительно среднего"],
   noAlarms: ["No alarms.", "Аварий нет."],
   time: ["Machine time", "Машинное время"],
   blocks: ["Blocks", "Кадры"],
@@ -151,7 +157,7 @@ const TEXTS = {
   node: ["node", "узел"],
   block: ["block", "кадр"],
 };
-const UNITS_RU = {"mm": "мм", "mm/s": "мм/с", "mm/s²": "мм/с²", "mm/s³": "мм/с³", "deg": "°", "deg/s": "°/с",
+const UNITS_RU = {"mm": "мм", "mm/s": "мм/с", "mm/min": "мм/мин", "mm/s²": "мм/с²", "mm/s³": "мм/с³", "deg": "°", "deg/s": "°/с",
   "deg/s²": "°/с²", "deg/s³": "°/с³", "µm": "мкм", "rpm": "об/мин", "s": "с", "ms": "мс", "µs": "мкс", "m": "м", "arcsec": "″"};
 const UNITS_EN = {"deg": "°", "deg/s": "°/s", "deg/s²": "°/s²", "deg/s³": "°/s³", "arcsec": "″"};
 

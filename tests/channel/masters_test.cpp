@@ -400,6 +400,21 @@ TEST(ProbeProgram, knows_where_it_touched_to_a_tenth_of_the_way_of_a_cycle) {
   }
 }
 
+TEST(ProbeProgram, keeps_each_touch_for_the_report) {
+  Rig rig("(DPT,10,12,600)\nG72 Z-50 E30\nG0 X7\nG72 Z-50 E30\nM30\n");
+  rig.drives.surface_at(-48.125);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  const std::vector<TouchPlace> touches = rig.process->feeder().touch_log().all();
+  ASSERT_EQ(touches.size(), 2u);
+  for (const std::size_t n : {0u, 1u}) {
+    EXPECT_NEAR(touches[n].at[2], -48.125, 0.001) << n;
+    EXPECT_NEAR(touches[n].from[0], n == 0 ? 0.0 : 7.0, 1e-9) << n;
+    EXPECT_EQ(touches[n].to[0], touches[n].from[0]) << "along Z only";
+    EXPECT_LT(touches[n].to[2], -50.0 + 1e-9) << n;
+    EXPECT_EQ(touches[n].feed_mm_min, 600.0) << n;
+  }
+}
+
 TEST(ProbeProgram, of_an_input_without_times_is_known_to_the_way_of_a_cycle) {
   Rig rig(kTouch);
   rig.drives.surface_at(-49.3217);

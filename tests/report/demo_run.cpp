@@ -154,6 +154,7 @@ Report demo_report(const DemoRun& demo, int alarms) {
     a.travel_min = -300;
     a.travel_max = 300;
   }
+  r.touches = {{2, "Z", "mm", false, -1, 120.0, {-20.0013, -19.9987, -20.0}}};
   CycleTimes times({"receive", "logic", "interpolate", "axes", "send"});
   for (int i = 0; i < 2000; ++i) {
     const std::int64_t phases[] = {400 + i % 90, 700, 800, 300, 500 + i % 40};

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +19,7 @@
 #include "gateway/command/client/tables.hpp"
 #include "gateway/command/client/wait.hpp"
 #include "gateway/command/signals.hpp"
+#include "report/touches.hpp"
 
 namespace servogate::gateway::command {
 
@@ -140,10 +140,9 @@ std::optional<int> ask_person(SocketClient& connection, json request) {
   return confirmed(kGoThere);
 }
 
-/// Places as people see them, with what they say together.
-struct Measured {
+/// Places as people see them, with what they say together: mm.
+struct Measured : report::Repeatability {
   std::vector<double> places;
-  double mean = 0.0, spread = 0.0, deviation = 0.0;  ///< mm
 };
 
 Measured measured_from(const json& status) {
@@ -151,14 +150,7 @@ Measured measured_from(const json& status) {
   const json touched = status.value("touched", json());
   if (!touched.is_object()) return m;
   m.places = touched.value("places", std::vector<double>{});
-  if (m.places.empty()) return m;
-  const auto count = static_cast<double>(m.places.size());
-  m.mean = std::accumulate(m.places.begin(), m.places.end(), 0.0) / count;
-  const auto [least, most] = std::minmax_element(m.places.begin(), m.places.end());
-  m.spread = *most - *least;
-  double squares = 0.0;
-  for (const double place : m.places) squares += (place - m.mean) * (place - m.mean);
-  m.deviation = count > 1.0 ? std::sqrt(squares / (count - 1.0)) : 0.0;
+  static_cast<report::Repeatability&>(m) = report::repeatability(m.places);
   return m;
 }
 

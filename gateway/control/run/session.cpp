@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "gateway/control/run/words/alarm_entries.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
@@ -147,6 +149,44 @@ const report::RecordedRun* Session::picture() const {
   return picture_ != nullptr ? &picture_->run() : nullptr;
 }
 
+namespace {
+
+/// Each touch of all processes, for every axis that its motion moved.
+std::vector<report::Touch> touches_of(Control& control) {
+  constexpr double kMoves = 1e-6;
+  std::vector<report::Touch> touches;
+  const std::size_t axes = control.machine().axes.size();
+  for (int p = 0; p < control.machine().control.processes; ++p)
+    for (const channel::TouchPlace& t : control.process(p).feeder().touch_log().all()) {
+      const auto moves = [&t](std::size_t a) { return std::abs(t.to[a] - t.from[a]) > kMoves; };
+      report::Touch touch;
+      touch.feed_mm_min = t.feed_mm_min;
+      for (std::size_t a = 0; a < axes; ++a) touch.beside[a] = moves(a) ? t.at[a] : t.from[a];
+      for (std::size_t a = 0; a < axes; ++a) {
+        if (!moves(a)) continue;
+        report::Touch of_axis = touch;
+        of_axis.axis = static_cast<int>(a);
+        of_axis.direction = t.to[a] > t.from[a] ? 1 : -1;
+        of_axis.at = std::exchange(of_axis.beside[a], 0.0);
+        touches.push_back(of_axis);
+      }
+    }
+  return touches;
+}
+
+std::vector<report::TouchGroup> touch_groups(Control& control) {
+  std::vector<report::TouchGroup> groups = report::grouped(touches_of(control));
+  for (report::TouchGroup& g : groups) {
+    const machine::AxisConfig& axis = control.machine().axes[static_cast<std::size_t>(g.axis)];
+    g.letter = axis.letter;
+    g.unit = axis.unit();
+    g.diameter = axis.diameter;
+  }
+  return groups;
+}
+
+}  // namespace
+
 report::Report Session::make_report(double wall_s, std::int64_t overruns) const {
   report::Report r;
   const cycle::Cycle& cycle = control_.cycle();
@@ -187,6 +227,7 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
     r.axes[a].limit_following_error =
         axis.following_error_stop + axis.following_error_velocity * axis.max_velocity;
   }
+  r.touches = touch_groups(control_);
   report::fill_cycle_times(r, times_, realtime_);
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
     const image::SegmentStatus& s = image.segments[b];
