@@ -174,6 +174,27 @@ Json to_json(const TouchGroup& t) {
   return out;
 }
 
+Json to_json(const ThreadPass& t) {
+  Json out{{"process", t.process + 1},
+           {"spindle", t.spindle + 1},
+           {"line", t.line},
+           {"t", rounded(t.begin_s)},
+           {"duration_s", rounded(t.duration_s)},
+           {"axis", t.letter},
+           {"lead_mm", rounded(t.lead)},
+           {"revolutions", rounded(t.revolutions)},
+           {"speed_rpm", {rounded(t.speed_min_rpm), rounded(t.speed_max_rpm)}},
+           {"off_mm",
+            {{"mean", rounded(t.off_mean)},
+             {"least", rounded(t.off_least)},
+             {"greatest", rounded(t.off_greatest)}}},
+           {"profile_mm", Json::array()}};
+  if (!t.file_name.empty()) out["file"] = t.file_name;
+  for (const ThreadPass::Part& part : t.profile)
+    out["profile_mm"].push_back({rounded(part.least), rounded(part.greatest)});
+  return out;
+}
+
 Json to_json(const SegmentReport& s) {
   Json out{{"name", s.name},
            {"load", rounded(s.load)},
@@ -266,6 +287,7 @@ Json json_of(const Report& r, Language language) {
   out["axes"] = Json::object();
   for (const AxisReport& a : r.axes) out["axes"][a.letter] = to_json(a);
   for (const TouchGroup& t : r.touches) out["touches"].push_back(to_json(t));
+  for (const ThreadPass& t : r.threads) out["threads"].push_back(to_json(t));
   out["virtual_speed"] = rounded(r.virtual_speed);
   out["cycle_us"] = to_json(r.cycle_us);
   if (r.lateness_us) out["lateness_us"] = to_json(*r.lateness_us);

@@ -9,6 +9,7 @@
 #include "firmware_if/image/alarms/alarm_table.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "report/statistics.hpp"
+#include "report/threads.hpp"
 #include "report/touches.hpp"
 
 namespace servogate::report {
@@ -147,6 +148,7 @@ struct Report {
   std::vector<ForceEntry> forces;  ///< held from before the first motion to the end
   std::vector<AxisReport> axes;
   std::vector<TouchGroup> touches;  ///< of probes
+  std::vector<ThreadPass> threads;  ///< and taps, in the order in which they began
   double virtual_speed = 0.0;       ///< simulated seconds per second
   Quantiles cycle_us;
   std::optional<Quantiles> lateness_us;  ///< real time only

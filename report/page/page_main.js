@@ -51,7 +51,7 @@ function texts() {
   $("turned").textContent = RUN.turned ? tr("turned", RUN.view[1]) : "";
   const steady = steadySignals(), names = (key, list) => list.length ? tr(key) + " — " + list.join(", ") : "";
   $("steady").textContent = steady.count && !S.constant ? tr("steady") + ": " + [names("on", steady.on), names("off", steady.off)].filter(Boolean).join("; ") : "";
-  cards(); findings(); limitBars(); touches(); alarms(); timing(); provenance(); speedKey(); filters(); axisSwitches(); comparison(); readout(); resolution();
+  cards(); findings(); limitBars(); threads(); touches(); alarms(); timing(); provenance(); speedKey(); filters(); axisSwitches(); comparison(); readout(); resolution();
 }
 function resolution() { if (RUN.line.length) $("resolution").textContent = resolutionWords(timeGrid(() => emit("unpacked"))); }
 function readout() {

@@ -65,6 +65,24 @@ function alarms() {
   });
   fill("alarms", el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows)));
 }
+/** The band from the least to the greatest deviation over a thread, both ways from 0 to `most`. */
+function deviationBand(parts, most) {
+  const percent = v => (50 - 48 * v / most).toFixed(1);
+  return el("div", {class: "band"}, ...parts.map((p, n) => el("i", {style: `left:${(100 * n / parts.length).toFixed(1)}%;width:${(100 / parts.length).toFixed(1)}%;top:${percent(p[1])}%;bottom:calc(100% - ${percent(p[0])}%)`})));
+}
+/** Threads and taps: the lead that was cut, and how far the path was off the spindle. */
+function threads() {
+  const list = report().threads || [], shown = list.slice(0, 100), micro = v => num(v * 1000, 3);
+  $("thread-section").hidden = !list.length;
+  const most = shown.reduce((m, t) => Math.max(m, Math.abs(t.off_mm.least), Math.abs(t.off_mm.greatest)), 1e-6);
+  const rows = shown.map(t => el("tr", {}, el("th", {}, tr("line") + " " + t.line, el("span", {class: "note"}, " " + t.axis + (t.file ? ", " + t.file : ""))),
+    ...[fixed(t.lead_mm, 4) + " " + unit("mm"), num(t.revolutions, 4), num(t.speed_rpm[0], 4) + " … " + num(t.speed_rpm[1], 4) + " " + unit("rpm"),
+      micro(t.off_mm.least) + " … " + micro(t.off_mm.greatest) + " " + unit("µm")].map(v => el("td", {class: "figure"}, v)),
+    el("td", {}, deviationBand(t.profile_mm, most), el("div", {class: "note"}, "± " + micro(most) + " " + unit("µm")))));
+  const heads = [tr("line"), ...["thread.lead", "thread.turns", "thread.speed", "thread.off"].map(k => tr(k)), tr("thread.profile")];
+  fill("threads", el("table", {}, el("thead", {}, el("tr", {}, ...heads.map((h, k) => el("th", {class: k && k < 5 ? "figure" : ""}, h)))), el("tbody", {}, ...rows)),
+    ...(list.length > shown.length ? [el("p", {class: "note"}, tr("thread.more", list.length - shown.length))] : []));
+}
 /** Places that a probe has touched, and how well they repeat: a dot for each touch. */
 function touches() {
   const list = report().touches || [];

@@ -154,6 +154,19 @@ Report demo_report(const DemoRun& demo, int alarms) {
     a.travel_min = -300;
     a.travel_max = 300;
   }
+  ThreadPass thread;
+  thread.line = 120;
+  thread.letter = "Z";
+  thread.axis = 2;
+  thread.duration_s = 2.0;
+  thread.revolutions = 20.0;
+  thread.speed_min_rpm = 594.0;
+  thread.speed_max_rpm = 606.0;
+  thread.lead = 1.50013;
+  thread.off_least = -0.0023;
+  thread.off_greatest = 0.0041;
+  thread.profile = {{-0.0023f, 0.001f}, {0.0f, 0.0041f}, {-0.001f, 0.001f}};
+  r.threads = {thread};
   r.touches = {{2, "Z", "mm", false, -1, 120.0, {-20.0013, -19.9987, -20.0}}};
   CycleTimes times({"receive", "logic", "interpolate", "axes", "send"});
   for (int i = 0; i < 2000; ++i) {

@@ -42,6 +42,24 @@ struct Trace {
 
 constexpr double kFace = 23.0;  // the line of bush.nc that faces at G96 S150 and G95 F0.2
 
+TEST(Lathe, cuts_threads_whose_lead_and_deviation_stand_in_the_report) {
+  Shell shell;
+  const std::string report = (shell.folder() / "r.json").string();
+  const Outcome o = shell.run({"run", Shell::example("lathe/machine.toml"), Shell::example("lathe/thread.nc"),
+                               "--virtual", "--report", report});
+  ASSERT_EQ(o.exit, 0) << o.err;
+  const json threads = json::parse(shell.text("r.json"))["threads"];
+  ASSERT_EQ(threads.size(), 6u) << "four passes, and a thread of two starts";
+  for (std::size_t n = 0; n < threads.size(); ++n) {
+    const json& thread = threads[n];
+    EXPECT_EQ(thread["axis"], "Z");
+    EXPECT_NEAR(thread["lead_mm"].get<double>(), n < 4 ? 1.5 : 3.0, 1e-4) << n;
+    EXPECT_NEAR(thread["speed_rpm"][0].get<double>(), 600.0, 6.0);
+    EXPECT_GT(thread["off_mm"]["least"].get<double>(), -0.01) << n;
+    EXPECT_LT(thread["off_mm"]["greatest"].get<double>(), 0.01) << n;
+  }
+}
+
 TEST(Lathe, turns_a_bush_with_three_tools_at_constant_cutting_speed) {
   Shell shell;
   const auto file = [&](const char* name) { return (shell.folder() / name).string(); };

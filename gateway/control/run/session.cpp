@@ -35,6 +35,15 @@ report::RunRecorderOptions picture_options(const machine::MachineConfig& m) {
   return options;
 }
 
+/// By process the spindle whose angle its threads follow: its first one; -1: it has none.
+std::vector<int> leading_spindles(const machine::MachineConfig& machine) {
+  std::vector<int> spindles(static_cast<std::size_t>(machine.control.processes), -1);
+  for (std::size_t s = machine.spindles.size(); s-- > 0;)
+    if (const auto p = static_cast<std::size_t>(machine.spindles[s].process - 1); p < spindles.size())
+      spindles[p] = static_cast<int>(s);
+  return spindles;
+}
+
 /// A frame is affine: where it takes the machine's zero and a step along each axis says it all.
 report::WorkFrame work_frame(const machine::MachineConfig& machine, const program::Frame& frame) {
   report::WorkFrame out;
@@ -88,6 +97,7 @@ Session::Session(Control& control, const Outputs& outputs, bool realtime)
       sampled_(layout_),
       realtime_(realtime),
       statistics_(layout_),
+      threads_(static_cast<int>(control.machine().axes.size()), leading_spindles(control.machine())),
       times_(phase_names()) {
   if (realtime) sync_late_.resize(control.suppliers().size());
   sampled_.signals.clear();
@@ -118,6 +128,7 @@ void Session::after_cycle(image::Nanoseconds late_ns) noexcept {
   const cycle::Cycle& cycle = control_.cycle();
   report::sample(cycle.image(), sampled_, row_);
   statistics_.add(row_);
+  threads_.add(cycle.image());
   if (cycle.measured()) times_.add(cycle.duration_ns(), late_ns, cycle.phase_ns().data());
   time_sync();
   if (recorder_ != nullptr) recorder_->record(row_);
@@ -185,6 +196,15 @@ std::vector<report::TouchGroup> touch_groups(Control& control) {
   return groups;
 }
 
+std::vector<report::ThreadPass> thread_passes(Control& control, const report::ThreadLog& log) {
+  std::vector<report::ThreadPass> passes = log.passes();
+  for (report::ThreadPass& pass : passes) {
+    if (pass.axis >= 0) pass.letter = control.machine().axes[static_cast<std::size_t>(pass.axis)].letter;
+    if (pass.file != 0) pass.file_name = control.process(pass.process).texts().file(pass.run, pass.file);
+  }
+  return passes;
+}
+
 }  // namespace
 
 report::Report Session::make_report(double wall_s, std::int64_t overruns) const {
@@ -228,6 +248,7 @@ report::Report Session::make_report(double wall_s, std::int64_t overruns) const 
         axis.following_error_stop + axis.following_error_velocity * axis.max_velocity;
   }
   r.touches = touch_groups(control_);
+  r.threads = thread_passes(control_, threads_);
   report::fill_cycle_times(r, times_, realtime_);
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
     const image::SegmentStatus& s = image.segments[b];

@@ -44,6 +44,7 @@ class Session {
   report::TraceLayout sampled_;  ///< what a row is filled with: signals only where somebody records them
   bool realtime_;
   report::RunStatistics statistics_;
+  report::ThreadLog threads_;
   report::CycleTimes times_;
   std::vector<report::Histogram> sync_late_;  ///< by bus; real time only
   report::Histogram sync_skew_;
