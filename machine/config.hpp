@@ -147,6 +147,8 @@ struct AxisConfig {
 
 /// By what angle of the first spindle of its process a spindle follows it, where a program couples them.
 enum class Coupling : std::uint8_t { none, setpoint, measured };
+/// By what angle of the spindle threads go.
+enum class ThreadMaster : std::uint8_t { measured, setpoint };
 
 /// What the loss of a node or of an inverter makes the machine do, in rising severity.
 enum class LossReaction : std::uint8_t { stop_on_path, stop_axes, stop_and_power_off, quick_stop, power_off };
@@ -184,10 +186,11 @@ struct SpindleConfig {
   double gear_change_timeout = 5.0;  ///< s to the confirmation of a gear, then an alarm
   double encoder_delay = 0.0;        ///< s by which its counts are older than those of the drives
   Direction direction = Direction::plus;
-  double at_speed_window = 5.0;                   ///< per cent
-  double at_speed_timeout = 10.0;                 ///< s from the ramp's end to an alarm, 0: none
-  double orient_angle = 0.0;                      ///< degrees, oriented stop
-  double orient_speed = 60.0;                     ///< rpm
+  double at_speed_window = 5.0;    ///< per cent
+  double at_speed_timeout = 10.0;  ///< s from the ramp's end to an alarm, 0: none
+  double orient_angle = 0.0;       ///< degrees, oriented stop
+  double orient_speed = 60.0;      ///< rpm
+  ThreadMaster thread_master = ThreadMaster::measured;
   Coupling coupling = Coupling::none;             ///< by what it follows the first spindle of its process
   double coupling_window = 2.0;                   ///< degrees off; beyond: alarm
   std::string axis;                               ///< letter of the rotary axis that it becomes; empty: none

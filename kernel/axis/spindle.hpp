@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "firmware_if/image/alarm.hpp"
@@ -115,6 +116,9 @@ class Spindle {
   /// The same with its revolutions and its time, exact however long the spindle runs; a reading that did not
   /// come keeps the time of the one before. real-time safe.
   const SpindleAngle& angle() const noexcept { return master_; }
+  /// Of one whose threads go by its set-point: revolutions by which the commanded angle was ahead of angle()
+  /// at the time of that; none: it is not led by its set-point now. real-time safe.
+  std::optional<double> setpoint_ahead() const noexcept;
   /// Measured angle, 0-360 degrees, + clockwise; from the zero mark once it has been passed. real-time safe.
   double angle_deg() const noexcept { return angle_deg_; }
 
@@ -141,6 +145,7 @@ class Spindle {
   void hold_to_angle(double dt) noexcept;
   void track_command(const image::CycleTime& now) noexcept;
   double behind_turns(bool& led) const noexcept;
+  bool by_setpoint() const noexcept;
   void watch_coupling(double dt) noexcept;
   double fastest() const noexcept;
   double ramp_rpm_s(double wanted) const noexcept;

@@ -104,11 +104,22 @@ void Spindle::follow(const Spindle& leader, const image::CycleTime& now) noexcep
   led_.seen = by_setpoint ? link_.place(seen) : led_.turns;
 }
 
+/// A follower or the machine file has its commanded angle lead, and it is held to that.
+bool Spindle::by_setpoint() const noexcept {
+  const bool turns = mode_ == SpindleMode::cw || mode_ == SpindleMode::ccw || mode_ == SpindleMode::stop;
+  return leading_.by_setpoint || (config_.thread_by_setpoint && turns);
+}
+
+std::optional<double> Spindle::setpoint_ahead() const noexcept {
+  if (!config_.thread_by_setpoint || !track_.begun() || !master_.valid) return std::nullopt;
+  return track_.at(master_.at_ns) - total_turns();
+}
+
 /// From where it was at its newest reading to where it was led to at that time.
 double Spindle::behind_turns(bool& led) const noexcept {
   led = enable_ && on_;
   if (led && link_.placed() && led_.known) return led_.turns - total_turns();
-  if (led && leading_.by_setpoint && track_.begun() && master_.valid)
+  if (led && by_setpoint() && track_.begun() && master_.valid)
     return track_.at(master_.at_ns) - total_turns();
   led = false;
   return 0.0;
@@ -129,7 +140,11 @@ void Spindle::hold_to_angle(double dt) noexcept {
 
 /// What is commanded in this cycle turns the drive from the next SYNC to the one behind it.
 void Spindle::track_command(const image::CycleTime& now) noexcept {
-  if (!leading_.by_setpoint || !on_ || !master_.valid) return track_.forget();
+  if (!by_setpoint() || !on_ || !master_.valid) return track_.forget();
+  // Without its enable, or under a load that it does not bear: what is lost is not caught up.
+  if (!leading_.by_setpoint && track_.begun() &&
+      std::abs(track_.at(master_.at_ns) - total_turns()) > kMostOff)
+    track_.forget();
   const image::Nanoseconds acts = now.t_ns + now.period_ns;
   if (!track_.begun()) {
     const double since = static_cast<double>(acts - master_.at_ns) * 1e-9;

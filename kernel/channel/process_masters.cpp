@@ -59,6 +59,8 @@ path::MasterReading Process::master(const cycle::ProcessContext& c) const noexce
   reading.turns = angle.turns;
   reading.part = angle.part;
   reading.at_ns = angle.at_ns;
+  reading.by_setpoint = turns->config().thread_by_setpoint;
+  reading.setpoint_ahead = turns->setpoint_ahead();
   reading.braking = turns->config().acceleration / 60.0;
   const int delay = own_count_ > 0 ? c.axes[own_[0].machine].config().feedback_delay : 2;
   reading.acts_ns = c.image.now.t_ns + (delay - 1) * c.image.now.period_ns;

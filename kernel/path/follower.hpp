@@ -156,9 +156,10 @@ class Follower {
   std::uint64_t taken_ = 0;  ///< entries taken from the track
   Motion motion_;            ///< through spans
   CourseAhead course_;
-  RateMotion rate_;      ///< along a course
-  MasterMotion master_;  ///< through spans, by the spindle's angle
-  MasterEstimate estimate_;
+  RateMotion rate_;           ///< along a course
+  MasterMotion master_;       ///< through spans, by the spindle's angle
+  MasterEstimate estimate_;   ///< of the measured angle
+  MasterEstimate commanded_;  ///< of the commanded one, where threads go by it
   MasterReading reading_;
   Retract retract_;
   Vector along_{};          ///< the most that each axis moves for a path of 1, on that run

@@ -16,6 +16,13 @@ constexpr int kSpansPerCycle = 16;              // passed
 void Follower::set_master(const MasterReading& reading) noexcept {
   reading_ = reading;
   estimate_.take(reading);
+  if (!reading.by_setpoint) return;
+  MasterReading commanded = reading;
+  commanded.valid = reading.valid && reading.setpoint_ahead.has_value();
+  const double angle = reading.part + reading.setpoint_ahead.value_or(0.0), whole = std::floor(angle);
+  commanded.turns += static_cast<std::int64_t>(whole);
+  commanded.part = angle - whole;
+  commanded_.take(commanded);
 }
 
 bool Follower::begin_by_master() noexcept {
@@ -48,7 +55,7 @@ void Follower::follow_master() noexcept {
   const bool rests = master_.left();
   const bool leave = stopping_ || (hold_ && config_.threads.hold_retracts && !master_.taps());
   master_.extend(window_);
-  master_.step(estimate_, reading_, rest_asked(), leave);
+  master_.step(master_.by_setpoint(reading_) ? commanded_ : estimate_, reading_, rest_asked(), leave);
   if (rests) retract_.path_rests(config_);
   if (master_.leaving()) return move_off_path();
   leave_spans_behind();

@@ -50,7 +50,7 @@ void check_station_devices(const LoadResult& loaded, Reading& reading);
 void check_gpio_lines(const MachineConfig& machine, Reading& reading);
 /// Boards, and axes whose amplifier is on one.
 void check_boards(const MachineConfig& machine, Reading& reading);
-/// Spindles that follow another one.
+/// Spindles that follow another one, and by what angle threads go.
 void check_couplings(const MachineConfig& machine, Reading& reading);
 /// Spindles that become a rotary axis.
 void check_spindle_axes(const LoadResult& loaded, Reading& reading);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spindles that follow the angle of another one.
+// Spindles that follow the angle of another one, and by what angle threads go.
 #include <string>
 #include <vector>
 
@@ -15,12 +15,18 @@ void check_couplings(const MachineConfig& machine, Reading& reading) {
     const auto error = [&](const char* key, const text::Entry& entry, std::vector<std::string> arguments) {
       reading.error(machine.where(path + key), entry, std::move(arguments));
     };
+    const SpindleConfig* leader = machine.spindle_of_process(s.process - 1);
+    if (s.thread_master == ThreadMaster::setpoint) {
+      if (leader != &s)
+        error("thread_master", finding::kThreadMasterFirst, {number});
+      else if (!s.has_encoder() || s.drive.empty())
+        error("thread_master", finding::kThreadMasterEncoder, {number});
+    }
     if (s.coupling == Coupling::none) {
       if (machine.places.contains(path + "coupling_window"))
         error("coupling_window", finding::kCouplingWindowAlone, {number});
       continue;
     }
-    const SpindleConfig* leader = machine.spindle_of_process(s.process - 1);
     if (leader == nullptr || leader == &s) {
       error("coupling", finding::kCouplingFirst, {number});
       continue;

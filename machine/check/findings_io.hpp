@@ -41,6 +41,17 @@ inline constexpr text::Entry kCouplingEncoder{
     "(`drive`, counts_per_rev)",
     "шпиндель {0}: для `coupling` нужен угол обоих шпинделей, а у шпинделя {1} нет привода с датчиком "
     "(`drive`, counts_per_rev)"};
+inline constexpr text::Entry kThreadMasterFirst{
+    "machine.thread_master_first",
+    "spindle {0}: `thread_master` is for the first spindle of a process: threads go by that one",
+    "шпиндель {0}: `thread_master` задаётся первому шпинделю процесса: резьба нарезается по нему"};
+inline constexpr text::Entry kThreadMasterEncoder{"machine.thread_master_encoder",
+                                                  "spindle {0}: it is held to its set-point by its angle: "
+                                                  "`thread_master = \"setpoint\"` needs a drive with "
+                                                  "an encoder (`drive`, counts_per_rev)",
+                                                  "шпиндель {0}: по заданному углу он ведётся по датчику: "
+                                                  "для `thread_master = \"setpoint\"` нужен привод с "
+                                                  "датчиком (`drive`, counts_per_rev)"};
 inline constexpr text::Entry kAxisMAlone{"machine.axis_m_alone",
                                          "spindle {0}: `axis_m` does nothing without `axis`",
                                          "шпиндель {0}: `axis_m` без `axis` ни на что не влияет"};

@@ -336,6 +336,12 @@ std::span<const std::string_view> choices_of<Coupling>() {
 }
 
 template <>
+std::span<const std::string_view> choices_of<ThreadMaster>() {
+  static constexpr std::string_view kNames[] = {"measured", "setpoint"};
+  return kNames;
+}
+
+template <>
 const Section& section_of<SpindleConfig>() {
   using C = SpindleConfig;
   static const Key keys[] = {
@@ -417,6 +423,12 @@ const Section& section_of<SpindleConfig>() {
                             "угол ориентированного останова в градусах"),
       key<&C::orient_speed>("orient_speed", {.unit = Unit::rpm, .min = 0, .max = 10000},
                             "speed of the oriented stop", "частота вращения при ориентации"),
+      key<&C::thread_master>(
+          "thread_master", {},
+          "by what angle threads go: as it is measured, or by its set-point, to which the spindle is then "
+          "held by its position",
+          "по какому углу нарезается резьба: по измеренному или по заданному, по которому тогда ведётся и "
+          "шпиндель"),
       key<&C::coupling>(
           "coupling", {},
           "of the second spindle of a process: by what angle it follows the first one when a program couples "

@@ -36,6 +36,8 @@ std::span<const std::string_view> choices_of<LossReaction>();
 template <>
 std::span<const std::string_view> choices_of<Coupling>();
 template <>
+std::span<const std::string_view> choices_of<ThreadMaster>();
+template <>
 std::span<const std::string_view> choices_of<InverterProtocol>();
 template <>
 std::span<const std::string_view> choices_of<ConnectionLoss>();

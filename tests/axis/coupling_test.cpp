@@ -31,11 +31,13 @@ SpindleConfig config(CouplingBy by = CouplingBy::none) {
 /// Two CSV drives with inertia whose zero marks lie anywhere.
 class Pair {
  public:
-  explicit Pair(CouplingBy by, double follower_acceleration = 2000.0, double window_deg = 3.0) {
-    SpindleConfig second = config(by);
+  explicit Pair(CouplingBy by, double follower_acceleration = 2000.0, double window_deg = 3.0,
+                bool thread_by_setpoint = false) {
+    SpindleConfig first = config(), second = config(by);
+    first.thread_by_setpoint = thread_by_setpoint;
     second.acceleration = follower_acceleration;
     second.coupling_window = window_deg;
-    spindles[0].configure(config(), 0);
+    spindles[0].configure(first, 0);
     spindles[1].configure(second, 1);
     image.packets.set_bit(image::field(image::kMachineFields, "power_on", image::kMachineBase), true);
     for (int n = 0; n < 2; ++n) set(n, "enable", 1.0);
@@ -474,6 +476,70 @@ TEST(Coupling, of_a_first_spindle_that_stands_turns_nothing) {
   EXPECT_TRUE(m.events.empty());
   m.spindles[0].order(SpindleMode::cw, 600.0);
   EXPECT_TRUE(m.until_synchronous()) << "as soon as it turns";
+}
+
+/// The first spindle alone.
+TEST(ThreadBySetpoint, holds_the_spindle_to_its_commanded_angle_and_says_how_far_it_is_behind) {
+  for (const bool held : {true, false}) {
+    Pair m(CouplingBy::none, 2000.0, 3.0, held);
+    Spindle& spindle = m.spindles[0];
+    spindle.order(SpindleMode::cw, 900.0);
+    m.run(2000);
+    EXPECT_EQ(spindle.setpoint_ahead().has_value(), held);
+    m.load[0] = 0.002;  // of its speed in a cycle: 1 % less
+    m.run(2000);
+    EXPECT_NEAR(spindle.actual_rpm(), held ? 900.0 : 891.0, 1.5);
+    if (held) {
+      EXPECT_NEAR(*spindle.setpoint_ahead(), 0.15 / 20.0, 1e-3) << "what the position loop needs";
+    }
+    m.load[0] = 0.0;
+    m.run(2000);
+    if (held) {
+      EXPECT_NEAR(*spindle.setpoint_ahead(), 0.0, 1e-3);
+    }
+    spindle.order(SpindleMode::ccw, 600.0);
+    m.run(3000);
+    EXPECT_NEAR(spindle.actual_rpm(), -600.0, 1.0);
+    if (held) {
+      EXPECT_NEAR(*spindle.setpoint_ahead(), 0.0, 1e-3);
+    }
+    spindle.order(SpindleMode::orient, 0.0);
+    m.run(4000);
+    EXPECT_TRUE(spindle.oriented());
+    EXPECT_FALSE(spindle.setpoint_ahead().has_value()) << "the oriented stop has a position of its own";
+    EXPECT_TRUE(m.events.empty());
+  }
+}
+
+TEST(ThreadBySetpoint, does_not_catch_up_turns_that_were_lost) {
+  Pair m(CouplingBy::none, 2000.0, 3.0, true);
+  Spindle& spindle = m.spindles[0];
+  spindle.order(SpindleMode::cw, 900.0);
+  m.run(2000);
+  const auto fastest_of = [&](int cycles) {
+    double fastest = 0.0;
+    while (cycles-- > 0) {
+      m.cycle();
+      fastest = std::max(fastest, spindle.actual_rpm());
+    }
+    return fastest;
+  };
+  m.load[0] = 0.2;  // it hardly turns
+  m.run(1000);
+  m.load[0] = 0.0;
+  EXPECT_LE(fastest_of(3000), 900.0 + 60.0 + 5.0) << "the position loop adds orient_rpm at most";
+  EXPECT_NEAR(spindle.actual_rpm(), 900.0, 1.0);
+  EXPECT_NEAR(spindle.setpoint_ahead().value(), 0.0, 1e-3) << "it is led from where it was freed";
+  m.set(0, "enable", 0.0);
+  m.run(1000);
+  m.set(0, "enable", 1.0);
+  EXPECT_LE(fastest_of(2000), 900.0 + 60.0 + 5.0);
+  m.dead[0] = true;
+  m.run(3000);
+  EXPECT_FALSE(spindle.setpoint_ahead().has_value());
+  m.dead[0] = false;
+  EXPECT_LE(fastest_of(4000), 900.0 + 60.0 + 5.0);
+  EXPECT_NEAR(spindle.setpoint_ahead().value(), 0.0, 1e-3);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ using image::RequestKind;
 /// Watches Z against the true revolutions of the spindle: a set-point acts two cycles before the encoder's
 /// reading of the same time is there.
 struct Watched : Rig {
-  Watched(std::string_view program, double lead_mm, double begins_at = 0.0)
-      : Rig(program), lead(lead_mm), begins(begins_at) {
+  Watched(std::string_view program, double lead_mm, double begins_at = 0.0, RigKind kind = RigKind::mill)
+      : Rig(program, "G27", 0.5, kind), lead(lead_mm), begins(begins_at) {
     each = [this] {
       z_ = {x(2), z_[0], z_[1]};
       const double speed = (z_[1] - z_[2]) * 1000.0, wanted = -lead * image().spindles[0].actual_rpm / 60.0;
@@ -76,6 +76,58 @@ TEST(ThreadProgram, takes_no_notice_of_the_feed_override_and_of_a_spindle_under_
   EXPECT_LE(while_slowing, bound);
   EXPECT_LE(rig.worst, 0.010) << "at a tenth less, the lead is the same";
   EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, by_the_set_point_is_cut_as_the_spindle_is_held_to_it_and_its_passes_lie_in_one_groove) {
+  Watched rig("S600 M3\nG33 Z-40 K1.5\nG0 X4\nG0 Z0\nG0 X0\nS750 M3\nG33 Z-40 K1.5\nM5\nM30\n", 1.5, 0.0,
+              RigKind::setpoint);
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  std::printf("thread by the set-point: %.3f um off the true angle, %d cycles\n", rig.worst * 1e3, rig.seen);
+  EXPECT_GT(rig.seen, 1000);
+  EXPECT_LE(rig.worst, 0.010);
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, by_the_set_point_holds_the_spindle_against_a_load_where_the_measured_one_goes_slower) {
+  for (const RigKind kind : {RigKind::setpoint, RigKind::mill}) {
+    Watched rig("S600 M3\nG33 Z-90 K1.5\nM30\n", 1.5, 0.0, kind);
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+    rig.drives.slip = 0.01;
+    rig.run(1.5);
+    rig.worst = 0.0;
+    const double from = rig.drives.turns;
+    rig.run(2.0);
+    // 2 s at 600 rpm, of which the load takes 1 %.
+    EXPECT_NEAR(rig.drives.turns - from, kind == RigKind::setpoint ? 20.0 : 19.8, 0.01);
+    EXPECT_LE(rig.worst, 0.010);
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
+TEST(ThreadProgram, by_the_set_point_leaves_the_part_where_the_spindle_does_not_bear_its_load) {
+  Rig rig("S600 M3\nG33 Z-90 K1.5\nM30\n", "G27", 0.5, RigKind::setpoint);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+  rig.drives.slip = 0.3;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kThreadWindow), 1) << rig.alarm_list();
+  EXPECT_NEAR(rig.x(0), 2.0, 1e-6) << "off the part as declared";
+  EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(ThreadProgram, by_the_set_point_leaves_the_part_where_the_spindle_is_not_read_or_stands) {
+  for (const bool silent : {true, false}) {
+    Rig rig("S600 M3\nG33 Z-60 K1.5\nM30\n", "G27", 0.5, RigKind::setpoint);
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.x(2) < -10.0; }));
+    (silent ? rig.drives.spindle_silent : rig.drives.spindle_stuck) = true;
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+    EXPECT_EQ(rig.alarms(silent ? alarm::kThreadMasterLost : alarm::kThreadWindow), 1) << rig.alarm_list();
+    EXPECT_NEAR(rig.x(0), 2.0, 1e-6);
+    EXPECT_EQ(rig.violations(), "");
+  }
 }
 
 TEST(ThreadProgram, that_is_held_ends_its_pass_and_goes_on_behind_it) {
@@ -172,8 +224,8 @@ std::string message(const Rig& rig) {
 /// Watches how far Z parts from the true spindle of a tap, from its lock on until both stand.
 struct WatchedTap : Rig {
   WatchedTap(std::string_view program, double lead_mm, std::string_view power_on = "G27",
-             std::string_view dialect = "nc110")
-      : Rig(program, power_on, 0.5, RigKind::mill, dialect) {
+             std::string_view dialect = "nc110", RigKind kind = RigKind::mill)
+      : Rig(program, power_on, 0.5, kind, dialect) {
     each = [this, lead_mm] {
       z_ = {x(2), z_[0], z_[1]};
       deepest = std::min(deepest, x(2));
@@ -259,6 +311,26 @@ TEST(TapProgram, whose_spindle_coasts_goes_no_deeper_than_it_is_allowed_to) {
   rig.run(1.0);
   EXPECT_EQ(rig.image().spindles[0].command_rpm, 0.0) << "the spindle is told to stop";
   EXPECT_EQ(rig.violations(), "");
+}
+
+TEST(TapProgram, goes_with_its_spindle_where_threads_go_by_the_set_point_too) {
+  for (const double loses : {0.0, 0.2}) {
+    WatchedTap rig(kTap, 1.5, "G27", "nc110", RigKind::setpoint);
+    rig.start();
+    ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -8.0; }));
+    rig.drives.slip = loses;
+    rig.parted = 0.0;
+    ASSERT_TRUE(rig.until([&] { return rig.x(2) > 1.0 && !rig.status().by_spindle; })) << rig.alarm_list();
+    EXPECT_LE(rig.parted, 0.15) << "by the set-point it would be " << loses * 15.0 << " mm";
+    EXPECT_EQ(rig.violations(), "");
+  }
+  WatchedTap rig(kTap, 1.5, "G27", "nc110", RigKind::setpoint);
+  rig.start();
+  ASSERT_TRUE(rig.until([&] { return rig.behind > 100 && rig.x(2) < -8.0; }));
+  rig.drives.spindle_coasts = true;
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::stopped_by_alarm && !rig.moving(); }));
+  EXPECT_EQ(rig.alarms(alarm::kTapTooDeep), 1) << rig.alarm_list();
+  EXPECT_GE(rig.deepest, -25.0 - 3.0 - 1e-6) << "bounded as ever";
 }
 
 TEST(TapProgram, whose_spindle_coasts_in_an_emergency_stop_is_bounded_too_and_says_so) {

@@ -261,6 +261,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   parts.processes = {process.get()};
   parts.spindles.emplace_back().max_rpm = kSpindleMax;
   parts.spindles.back().encoder = kind != RigKind::blind;
+  parts.spindles.back().thread_by_setpoint = kind == RigKind::setpoint;
   if (c_axis) parts.spindles.back().axis = 1;
   if (kind == RigKind::polygon) {
     parts.spindles.emplace_back().max_rpm = kSpindleMax;

@@ -98,7 +98,8 @@ class TestLogic final : public image::Logic {
 
 /// What the axes are: X, Y, Z; or X is programmed in diameter and the radius for G96; or Y is a rotary B; or
 /// X, Y, Z planned at twice their limits, so that no law through short blocks is found that keeps them.
-/// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread.
+/// Or a mill whose spindle has no encoder, and that has no probe; or one on which a hold leaves a thread, or whose
+/// threads go by the set-point of its spindle.
 /// Or one whose tool leaves a thread to where it came from. Or one whose drives latch the touch. Or one whose
 /// programs speak the ISO dialect, or Fenix. Or a lathe in the ISO dialect whose second spindle may follow
 /// the first one. Or one whose second axis is an endless C that the spindle becomes, by M70 and back by M71.
@@ -110,6 +111,7 @@ enum class RigKind {
   blind,
   retracting,
   infeed,
+  setpoint,
   latching,
   iso,
   fenix,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -43,20 +44,30 @@ struct Trace {
 constexpr double kFace = 23.0;  // the line of bush.nc that faces at G96 S150 and G95 F0.2
 
 TEST(Lathe, cuts_threads_whose_lead_and_deviation_stand_in_the_report) {
-  Shell shell;
-  const std::string report = (shell.folder() / "r.json").string();
-  const Outcome o = shell.run({"run", Shell::example("lathe/machine.toml"), Shell::example("lathe/thread.nc"),
-                               "--virtual", "--report", report});
-  ASSERT_EQ(o.exit, 0) << o.err;
-  const json threads = json::parse(shell.text("r.json"))["threads"];
-  ASSERT_EQ(threads.size(), 6u) << "four passes, and a thread of two starts";
-  for (std::size_t n = 0; n < threads.size(); ++n) {
-    const json& thread = threads[n];
-    EXPECT_EQ(thread["axis"], "Z");
-    EXPECT_NEAR(thread["lead_mm"].get<double>(), n < 4 ? 1.5 : 3.0, 1e-4) << n;
-    EXPECT_NEAR(thread["speed_rpm"][0].get<double>(), 600.0, 6.0);
-    EXPECT_GT(thread["off_mm"]["least"].get<double>(), -0.01) << n;
-    EXPECT_LT(thread["off_mm"]["greatest"].get<double>(), 0.01) << n;
+  for (const bool by_setpoint : {false, true}) {
+    Shell shell;
+    const auto file = [&](const char* name) { return (shell.folder() / name).string(); };
+    std::filesystem::copy(std::filesystem::path(Shell::example("lathe/machine.toml")).parent_path(),
+                          shell.folder() / "lathe", std::filesystem::copy_options::recursive);
+    if (by_setpoint) {
+      std::string machine = shell.text("lathe/machine.toml");
+      const std::string spindle = "[[spindle]]\n";
+      machine.insert(machine.find(spindle) + spindle.size(), "thread_master = \"setpoint\"\n");
+      std::ofstream(file("lathe/machine.toml")) << machine;
+    }
+    const Outcome o = shell.run({"run", file("lathe/machine.toml"), file("lathe/thread.nc"), "--virtual",
+                                 "--report", file("r.json")});
+    ASSERT_EQ(o.exit, 0) << o.err;
+    const json threads = json::parse(shell.text("r.json"))["threads"];
+    ASSERT_EQ(threads.size(), 6u) << "four passes, and a thread of two starts";
+    for (std::size_t n = 0; n < threads.size(); ++n) {
+      const json& thread = threads[n];
+      EXPECT_EQ(thread["axis"], "Z");
+      EXPECT_NEAR(thread["lead_mm"].get<double>(), n < 4 ? 1.5 : 3.0, 1e-4) << n;
+      EXPECT_NEAR(thread["speed_rpm"][0].get<double>(), 600.0, 6.0);
+      EXPECT_GT(thread["off_mm"]["least"].get<double>(), -0.01) << n;
+      EXPECT_LT(thread["off_mm"]["greatest"].get<double>(), 0.01) << n;
+    }
   }
 }
 

@@ -147,6 +147,8 @@ struct SpindleConfig {
   bool target_bit = false;  ///< at speed only where its drive says so, too (statusword bit 10)
   image::Reaction loss_reaction = image::Reaction::stop_on_path;  ///< of one with a source, or stronger
   std::uint32_t missed_limit = 3;
+  bool thread_by_setpoint =
+      false;  ///< threads go by the commanded angle, to which it is held by its position
   CouplingBy coupling = CouplingBy::none;
   double coupling_window = 2.0;  ///< degrees off the angle it is led to; beyond: synchronism is lost
   int axis = -1;  ///< place in the image of the rotary axis that it becomes, with the same drive; -1: none

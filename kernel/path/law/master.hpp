@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "firmware_if/image/time.hpp"
 
@@ -16,6 +17,10 @@ struct MasterReading {
   image::Nanoseconds at_ns = 0;    ///< when the encoder stood there
   image::Nanoseconds acts_ns = 0;  ///< when the set-point of this cycle is where the axes are
   double braking = 0.0;            ///< revolutions/s2 with which the spindle is stopped and reversed
+  bool by_setpoint = false;        ///< threads go by the commanded angle, which the spindle is held to
+  /// Of one by its set-point: revolutions by which the commanded angle was ahead of the measured one at that
+  /// time; none: it is not known.
+  std::optional<double> setpoint_ahead;
 };
 
 /// Revolutions from the estimate's own zero (a whole number of them from the zero mark), speed, acceleration.

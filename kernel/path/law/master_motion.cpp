@@ -236,7 +236,10 @@ void MasterMotion::try_begin(const MasterEstimate& master, const MasterReading& 
     profile = lead_in((first.per_turn + first.change * turns_to(first, profile.end().s)) * w, box_);
   const double way = profile.end().s;
   const double braking = reading.braking > 0.0 ? first.per_turn * w * w / (2.0 * reading.braking) : 0.0;
-  const double needed = way + (taps ? braking : ramp_distance(end_lead(segments_[static_cast<std::size_t>(count_ - 1)]) * w, 0.0, 0.0, box_));
+  const double needed =
+      way +
+      (taps ? braking
+            : ramp_distance(end_lead(segments_[static_cast<std::size_t>(count_ - 1)]) * w, 0.0, 0.0, box_));
   if (needed > length_) return fail(MasterFault::too_short, length_, needed);
   const double begins = turns_to(first, way) - w * profile.duration();
   start_ = taps ? 0.0 : lock_.start;
@@ -326,7 +329,8 @@ void MasterMotion::watch(const MasterEstimate& master, const MasterReading& read
     return history_[static_cast<std::size_t>((head_ - cycles + 2 * kHistory) % kHistory)];
   };
   const double z = ago - whole, then = (1.0 - z) * place(whole) + z * place(whole + 1);
-  phase_error_ = then - ideal({master.read(), 0.0, 0.0}).motion.s;
+  const double ahead = by_setpoint(reading) ? reading.setpoint_ahead.value_or(0.0) : 0.0;
+  phase_error_ = then - ideal({master.read() - ahead, 0.0, 0.0}).motion.s;
   if (phase_ != Phase::locked) return;
   if (locked_s_ > kSettles + ago * period_) settled_ = true;
   if (settled_ && std::abs(phase_error_) > window_)

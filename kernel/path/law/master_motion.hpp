@@ -69,6 +69,9 @@ class MasterMotion {
   /// Locked to the angle, behind its lead-in.
   bool locked() const noexcept { return phase_ == Phase::locked && settled_; }
   bool taps() const noexcept { return lock_.kind != Lock::Kind::thread; }
+  /// It goes by the commanded angle. A tap never does: its axis goes where the spindle goes, whatever that
+  /// does.
+  bool by_setpoint(const MasterReading& reading) const noexcept { return reading.by_setpoint && !taps(); }
   /// Leg of a tap in motion, from 0.
   int leg() const noexcept { return leg_; }
   /// The axes go where the spindle goes: a stop of theirs would part the tap from it. Bounded: the spindle
@@ -153,10 +156,10 @@ class MasterMotion {
   std::array<Segment, kMostSpans> segments_{};
   int count_ = 0;
   double length_ = 0.0;
-  bool ends_ = false;         ///< the last segment is the end of the run
-  std::uint64_t taken_ = 0;   ///< number of the span that is the last segment
-  double known_s_ = 0.0;      ///< of the run, at the limits of its spans, behind its first span
-  double first_time_ = 0.0;   ///< Span::time of the first
+  bool ends_ = false;        ///< the last segment is the end of the run
+  std::uint64_t taken_ = 0;  ///< number of the span that is the last segment
+  double known_s_ = 0.0;     ///< of the run, at the limits of its spans, behind its first span
+  double first_time_ = 0.0;  ///< Span::time of the first
   Box box_;
   Lock lock_;
   MotionState state_;

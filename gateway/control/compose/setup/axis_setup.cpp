@@ -258,6 +258,7 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
   c.at_speed_timeout = s.at_speed_timeout;
   c.orient_angle = s.orient_angle;
   c.orient_rpm = s.orient_speed;
+  c.thread_by_setpoint = s.thread_master == machine::ThreadMaster::setpoint;
   c.coupling = static_cast<axis::CouplingBy>(s.coupling);
   c.coupling_window = s.coupling_window;
   c.axis = loaded.machine.axis_index(s.axis);
