@@ -350,6 +350,7 @@ struct MachineConfig {
   std::vector<OwnCodeConfig> own_codes;
   ModbusServerConfig modbus_server;
   std::vector<PendantConfig> pendants;
+  std::vector<PathWheelConfig> path_wheels;
   SimulationConfig simulation;
 
   std::string file;  ///< path as given to load(), the `file` of every finding

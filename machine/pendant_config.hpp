@@ -18,4 +18,14 @@ struct PendantConfig {
   bool mock() const { return url.starts_with("mock:"); }
 };
 
+/// [[path_wheel]]: the handwheel that drives the programs of a process along their path.
+struct PathWheelConfig {
+  std::string source;       ///< "handwheel1", "handwheel2" of the PLC, or the name of a pendant
+  int process = 1;          ///< from 1
+  double full_speed = 100;  ///< counts a second, at which the path has its programmed feed
+  std::string healthy;      ///< input point that is TRUE while the counter means something; empty: none
+  /// Number of the handwheel of the PLC, 0: a pendant.
+  int handwheel() const { return source == "handwheel1" ? 1 : source == "handwheel2" ? 2 : 0; }
+};
+
 }  // namespace servogate::machine

@@ -149,8 +149,9 @@ enum class WaitReason : std::uint8_t {
   axis_feed_enable,  ///< the same, of `axis`
   override_zero,     ///< the operator's feed override is 0
   spindle_stands,    ///< the feed is per revolution, and the spindle is not commanded to turn
+  path_wheel,        ///< the handwheel that drives the path stands, turns back or is lost
 };
-inline constexpr int kWaitReasons = static_cast<int>(WaitReason::spindle_stands) + 1;
+inline constexpr int kWaitReasons = static_cast<int>(WaitReason::path_wheel) + 1;
 
 /// A wait of a process as plain data; words come from outside the cycle.
 struct Wait {
@@ -164,6 +165,17 @@ struct Wait {
   Nanoseconds since_ns = 0;  ///< machine time at which this wait began
 
   bool operator==(const Wait&) const = default;
+};
+
+/// The handwheel that drives a program along its path ([[path_wheel]] of the machine file).
+struct PathWheel {
+  bool chosen = false;  ///< the path follows it
+  bool lost = false;    ///< it says nothing: pulled out, or its encoder is not healthy
+  bool leads = false;   ///< it has driven the path back: only it, or a request that ends this, leads on
+  bool rests = false;   ///< the path rests for it alone, so that it may be driven back
+  double turned = 0.0;  ///< its speed as a share of `full_speed`, + forward, not limited
+  /// Share of the programmed feed, -1 to 1. real-time safe.
+  double rate() const noexcept { return turned > 1.0 ? 1.0 : turned < -1.0 ? -1.0 : turned; }
 };
 
 /// One process (part program) as everybody sees it.
@@ -190,6 +202,7 @@ struct ProcessStatus {
   bool holds_later = false;       ///< held at the end of the thread, or when the tap has left its hole
   double off_spindle_mm = 0.0;    ///< path that it was off the measured angle of the same time
   double tap_overshoot_mm = 0.0;  ///< that the tap in motion, or the last one, went beyond its depth
+  PathWheel wheel;
 };
 
 /// Everything the machine knows, written only inside Cycle::step() in the order: driver inputs, force, PLC,

@@ -52,7 +52,16 @@ enum class RequestKind : std::uint8_t {
                ///< index = to the begin of so many blocks; velocity = feed as of reposition, 0: as programmed
   function,    ///< index = image::Function; value = M code, tool number or rpm; packet = number of the
                ///< process' spindle, format = corrector of the tool
+  path_wheel,  ///< index = image::WheelNews; value = 1 or 0, or counts
 };
+
+/// What `path_wheel` says of the handwheel that drives a program along its path.
+enum class WheelNews : std::uint8_t {
+  choose,  ///< value 1: the program follows it from now on, 0: no more
+  turned,  ///< value = counts, + forward; of a pendant
+  here,    ///< value 1: the pendant is plugged in, 0: it is lost
+};
+inline constexpr int kWheelNews = static_cast<int>(WheelNews::here) + 1;
 
 /// What `function` does.
 enum class Function : std::uint8_t {

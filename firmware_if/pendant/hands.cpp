@@ -87,6 +87,8 @@ void Hands::stop(bool& which) noexcept {
 }
 
 void Hands::see(const View& view) noexcept {
+  // A hand that still turns does not jog: the axis is to be selected anew.
+  if (view_.by_path && !view.by_path) blocked_ = selected_;
   view_ = view;
   if (wheel_axis_ >= 0 && view.current && !under_way_) {
     const AxisView& axis = view.axes[at(wheel_axis_)];
@@ -97,7 +99,8 @@ void Hands::see(const View& view) noexcept {
     begin_end(wheel_axis_);
     wheel_axis_ = -1;
   }
-  if (!permitted(selected_)) drop_pending();
+  if (!permitted(selected_) || view.by_path) drop_pending();
+  if (!view.by_path || !held()) drop(std::exchange(path_turned_, 0));
   ring();
 }
 
@@ -156,6 +159,8 @@ void Hands::press(const Binding& b) noexcept {
       return;
     case Action::mdi:
       return queue({RequestKind::mdi, -1, 0.0, &b.text});
+    case Action::path_wheel:
+      return queue({RequestKind::path_wheel, -1, view_.by_path ? 0.0 : 1.0});
   }
 }
 
@@ -178,15 +183,19 @@ void Hands::take(const Reading& reading) noexcept {
   select();
   if (!held()) blocked_ = -1;
   if (step_ != step) drop_pending();
-  if (reading.counts != 0) {
-    const bool same = !first && step_ == step && selected_ == selected;
-    if (same && permitted(selected_) && ring_axis_ < 0 && step_length() > 0.0 &&
-        std::abs(pending_) < kMostPending)
-      pending_ += reading.counts;
-    else
-      drop(reading.counts);
-  }
+  if (reading.counts != 0) turn(reading.counts, !first && step_ == step && selected_ == selected);
   see(view_);
+}
+
+/// `same`: the report has turned no selector.
+void Hands::turn(int counts, bool same) noexcept {
+  if (same && view_.by_path && held() && std::abs(path_turned_) < kMostPending)
+    path_turned_ += counts;
+  else if (same && !view_.by_path && permitted(selected_) && ring_axis_ < 0 && step_length() > 0.0 &&
+           std::abs(pending_) < kMostPending)
+    pending_ += counts;
+  else
+    drop(counts);
 }
 
 /// The ring jogs while it is held out of its rest.
@@ -209,6 +218,7 @@ void Hands::lost() noexcept {
   wheel_axis_ = ring_axis_ = selected_ = chosen_ = blocked_ = -1;
   ring_armed_ = false;
   drop_pending();
+  drop(std::exchange(path_turned_, 0));
   queued_ = 0;
 }
 
@@ -266,6 +276,11 @@ bool Hands::next(Request& request, image::Nanoseconds now) noexcept {
   if (ring_axis_ >= 0 && now - kept_alive_ >= kKeepAlive) {
     kept_alive_ = now;
     request = {RequestKind::keep_alive, ring_axis_};
+    under_way_ = true;
+    return true;
+  }
+  if (path_turned_ != 0) {
+    request = {RequestKind::path_turned, -1, static_cast<double>(std::exchange(path_turned_, 0))};
     under_way_ = true;
     return true;
   }

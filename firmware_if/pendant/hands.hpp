@@ -34,6 +34,7 @@ struct View {
   bool released = true;  ///< the dead-man that is wired, where there is one, is held
   bool running = false;  ///< a program
   bool held = false;     ///< it is held
+  bool by_path = false;  ///< the wheel drives the program along its path
   bool powered = false;  ///< any axis
   bool alarm = false;    ///< one stands
   double override_percent = 100.0;
@@ -54,6 +55,8 @@ enum class RequestKind : std::uint8_t {
   zero,           ///< axis
   override_feed,  ///< value = per cent
   mdi,            ///< text
+  path_wheel,     ///< value 1: the wheel drives the program along its path, 0: no more
+  path_turned,    ///< value = counts, for that
 };
 /// What is asked of the control. Axes by their index in Layout::axes.
 struct Request {
@@ -107,6 +110,7 @@ class Hands {
   void select() noexcept;
   void drop(int counts) noexcept { dropped_ += static_cast<std::uint64_t>(counts < 0 ? -counts : counts); }
   void drop_pending() noexcept;
+  void turn(int counts, bool same) noexcept;
   void begin_end(int axis) noexcept;
   void queue(const Request& request) noexcept;
   void stop(bool& which) noexcept;
@@ -122,6 +126,7 @@ class Hands {
   int selected_ = -1, step_ = -1;
   bool machine_coordinates_ = false;
   int pending_ = 0;      ///< counts that were not asked for yet
+  int path_turned_ = 0;  ///< the same, along the path
   int wheel_axis_ = -1;  ///< that the wheel has moved last, and may still move
   int blocked_ = -1;     ///< axis that somebody has stopped: it is to be selected anew
   int ring_axis_ = -1;   ///< that the ring jogs

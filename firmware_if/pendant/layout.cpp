@@ -53,9 +53,9 @@ std::optional<char> letter(std::string_view text) {
   return text[0];
 }
 
-constexpr std::string_view kActions[] = {"nothing",   "shift",       "stop",   "hold",      "start_hold",
-                                         "reset",     "power",       "home",   "zero",      "override_by",
-                                         "next_step", "coordinates", "select", "hold_axis", "mdi"};
+constexpr std::string_view kActions[] = {
+    "nothing", "shift",       "stop",      "hold",        "start_hold", "reset",     "power", "home",
+    "zero",    "override_by", "next_step", "coordinates", "select",     "hold_axis", "mdi",   "path_wheel"};
 constexpr std::string_view kFields[] = {"",        "work",          "machine",          "shown",     "feed",
                                         "spindle", "feed_override", "spindle_override", "step_mark", "flags"};
 
@@ -131,7 +131,7 @@ std::string_view action_word(Action action) { return kActions[static_cast<std::s
 std::string_view action_words() {
   return "nothing, shift, stop, hold, start_hold, reset, power, home, zero, override_by N, next_step, "
          "coordinates, "
-         "select AXIS, hold_axis AXIS, mdi BLOCK";
+         "select AXIS, hold_axis AXIS, mdi BLOCK, path_wheel";
 }
 
 std::optional<Binding> parse_binding(std::string_view text, const Layout& layout) {

@@ -30,6 +30,7 @@ enum class Action : std::uint8_t {
   select,       ///< selects axis `axis`
   hold_axis,    ///< selects axis `axis` while it is held: a dead-man
   mdi,          ///< executes the block `text`
+  path_wheel,   ///< the wheel drives the program along its path from now on, and no more
 };
 
 /// A button has its number in Layout::buttons.

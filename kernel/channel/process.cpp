@@ -214,6 +214,7 @@ image::Stop Process::stop_without_alarm(const cycle::ProcessContext& c) const no
 
 void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   const image::Packets& k = c.image.packets;
+  watch_wheel(c);
   if (k.bit(at(kStopBit, base_))) held_ = running_;  // it goes on when somebody says so
   bool hold = held_ || aside_ || !k.bit(at(kFeedEnable, base_));
   for (const OwnAxis& own : own_axes()) hold = hold || !c.axes[own.machine].feed_enabled();
@@ -223,7 +224,8 @@ void Process::apply_hold(cycle::ProcessContext& c) noexcept {
   else
     follower_.resume();
   const double by_plc = k.number(at(kFeedOverride, base_)) / 100.0;
-  follower_.set_override(!override_effective_ ? 1.0 : by_plc > 0.0 ? by_plc : override_);
+  asked_ratio_ = !override_effective_ ? 1.0 : by_plc > 0.0 ? by_plc : override_;
+  follower_.set_override(by_wheel(asked_ratio_, c));
   const axis::Spindle* turns = spindle(0, c);
   follower_.set_spindle(
       turns == nullptr

@@ -174,6 +174,11 @@ class Process final : public cycle::ProcessInCycle {
   image::Wait wait_for_position(const cycle::ProcessContext& c) const noexcept;
   void apply_at_once(cycle::ProcessContext& c) noexcept;
   void apply_hold(cycle::ProcessContext& c) noexcept;
+  // process_wheel.cpp
+  void watch_wheel(cycle::ProcessContext& c) noexcept;
+  double by_wheel(double ratio, const cycle::ProcessContext& c) const noexcept;
+  bool rests_for_wheel(const path::Sample& sample, const cycle::ProcessContext& c) const noexcept;
+  double way_by_wheel(double ratio, const cycle::ProcessContext& c) noexcept;
   void apply_reaction(cycle::ProcessContext& c) noexcept;
   image::Stop stop_without_alarm(const cycle::ProcessContext& c) const noexcept;
   void drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
@@ -253,7 +258,11 @@ class Process final : public cycle::ProcessInCycle {
   bool go_on_ = false;  ///< start or step while an event waits for the operator
   double override_ = 1.0;
   bool override_effective_ = true;  ///< a program may say that it does not count
-  bool spindle_turned_ = false;     ///< the turn by an angle that the path waits for has been ordered
+  double asked_ratio_ = 1.0;        ///< of the feed, before the wheel of the path
+  bool by_wheel_ = false;           ///< the wheel is chosen
+  bool wheel_rests_ = false;        ///< image::PathWheel::rests
+  bool wheel_lost_told_ = false, wheel_fast_told_ = false;
+  bool spindle_turned_ = false;  ///< the turn by an angle that the path waits for has been ordered
   Stage stage_ = Stage::none;
   Event event_;
   double waited_s_ = 0.0;
@@ -268,6 +277,7 @@ class Process final : public cycle::ProcessInCycle {
   std::size_t function_count_ = 0;
   std::uint8_t surface_spindle_ = 0;  ///< of this process, that turns by a cutting speed
   double surface_speed_ = 0.0, surface_limit_ = 0.0, surface_center_ = 0.0;
+  bool on_master_ = false;  ///< a motion by the spindle's angle is under way
   bool tapping_ = false, tap_halted_ = false, master_told_ = false;
   std::int8_t tap_turn_ = 0;  ///< how the spindle was turned last for the tap under way
   double tap_rpm_ = 0.0;      ///< as it turned before

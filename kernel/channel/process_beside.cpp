@@ -32,7 +32,7 @@ double signed_rpm(axis::SpindleMode mode, double rpm) noexcept {
 /// Only somebody's word lets the program go on from here.
 bool Process::rests_for_operator() const noexcept {
   if (!running_ || stopping_ || !follower_.at_rest()) return false;
-  return aside_ || operator_waits() || (held_ && stage_ == Stage::none);
+  return aside_ || operator_waits() || wheel_rests_ || (held_ && stage_ == Stage::none);
 }
 
 cycle::Beside Process::beside(const cycle::ProcessContext& c) const noexcept {

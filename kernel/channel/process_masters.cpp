@@ -79,6 +79,7 @@ void Process::raise_of_motion(image::AlarmNumber number, double value, double li
 
 void Process::follow_master(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
   const path::ByMaster& master = sample.master;
+  on_master_ = master.underway;
   if (!master.underway) {
     if (tapping_) tap_overshoot_ = master.overshoot;
     master_told_ = tapping_ = false;

@@ -122,7 +122,8 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   stopping_ = held_ = go_on_ = false;
   forget_beside();
   probing_.forget();
-  probe_told_ = master_told_ = tapping_ = tap_halted_ = false;
+  probe_told_ = master_told_ = on_master_ = tapping_ = tap_halted_ = false;
+  wheel_rests_ = wheel_lost_told_ = wheel_fast_told_ = false;
   stage_ = Stage::none;
   last_speed_ = -1.0;
   state_ = ProcessState::running;

@@ -62,7 +62,7 @@ void Process::hold_way(const cycle::ProcessContext& c) noexcept {
     back_.hold();
   else
     back_.resume();
-  const double ratio = follower_.override_ratio();
+  const double ratio = way_by_wheel(asked_ratio_, c);
   back_.set_override(retrace_.capped ? std::min(ratio, 1.0) : ratio);
   if (const axis::Spindle* turns = spindle(0, c); turns != nullptr)
     back_.set_spindle(std::abs(c.image.spindles[static_cast<std::size_t>(turns->index())].command_rpm) /

@@ -185,7 +185,8 @@ image::Wait Process::wait_on_path(const cycle::ProcessContext& c) const noexcept
     if (!c.axes[own.machine].feed_enabled())
       return of(WaitReason::axis_feed_enable, at(kAxisFeedEnable, image::axis_base(own.machine)),
                 own.machine);
-  if (follower_.override_ratio() <= 0.0) return of(WaitReason::override_zero);
+  if (follower_.override_ratio() <= 0.0)
+    return of(by_wheel_ && asked_ratio_ > 0.0 ? WaitReason::path_wheel : WaitReason::override_zero);
   const axis::Spindle* apart = out_of_step(c);
   return apart != nullptr ? wait_for_step(apart) : image::Wait{};
 }
@@ -226,7 +227,9 @@ void Process::write_status(const path::Sample& sample, cycle::ProcessContext& c)
     out.line = shown_.line;
     out.file = shown_.file;
   }
-  out.override_ratio = follower_.override_ratio();
+  wheel_rests_ = rests_for_wheel(sample, c);
+  out.wheel.rests = wheel_rests_;
+  out.override_ratio = by_wheel_ ? asked_ratio_ : follower_.override_ratio();
   out.by_spindle = running_ && sample.master.locked;
   out.holds_later = running_ && follower_.holds_later();
   out.off_spindle_mm = out.by_spindle ? sample.master.phase_error : 0.0;

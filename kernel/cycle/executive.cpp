@@ -30,6 +30,8 @@ Cycle::Cycle(CycleParts parts)
   spindles_.resize(parts_.spindles.size());
   for (std::size_t i = 0; i < spindles_.size(); ++i)
     spindles_[i].configure(parts_.spindles[i], static_cast<int>(i));
+  for (std::size_t p = 0; p < path_wheels_.size(); ++p)
+    path_wheels_[p].configure(parts_.path_wheels[p], static_cast<int>(p));
   for (const axis::SpindleConfig& s : parts_.spindles)
     if (s.axis >= 0) {
       axis::Axis& a = axes_[static_cast<std::size_t>(s.axis)];

@@ -19,6 +19,7 @@
 #include "kernel/cycle/boundary/snapshot.hpp"
 #include "kernel/cycle/gate/gate.hpp"
 #include "kernel/cycle/plc_orders/handwheel.hpp"
+#include "kernel/cycle/plc_orders/path_wheel.hpp"
 #include "kernel/cycle/plc_orders/plc_motion.hpp"
 
 namespace servogate::cycle {
@@ -52,6 +53,7 @@ struct CycleParts {
       estop_place;  ///< emergency-stop chain: FALSE opens MC.estop_ok whatever the logic says
   std::optional<image::Place> alive_place;  ///< output that toggles as MC.control_alive does
   std::optional<image::Place> start_place;  ///< operator's start button: its rising edge asks for cycle start
+  std::array<PathWheelConfig, image::kMaxProcesses> path_wheels{};
   /// By which the age of requests is judged; nullptr: CLOCK_MONOTONIC, which a stopped process does not stop.
   const image::Clock* request_clock = nullptr;
 };
@@ -175,6 +177,7 @@ class Cycle {
   void watch_forces() noexcept;
   void jog_of_plc(axis::Axis& axis) noexcept;
   void follow_handwheel(Handwheel& wheel, axis::Axis& axis) noexcept;
+  void follow_path_wheel(PathWheel& wheel) noexcept;
   void move_auxiliary(PlcMotion& motion, axis::Axis& axis) noexcept;
   void stop_manual(bool with_plc) noexcept;
   void run_processes() noexcept;
@@ -222,6 +225,7 @@ class Cycle {
   std::array<std::int8_t, image::kMaxAxes> plc_jogs_{};
   std::array<PlcMotion, image::kMaxAxes> plc_motion_{};
   std::array<Handwheel, image::kMaxAxes> handwheels_{};
+  std::array<PathWheel, image::kMaxProcesses> path_wheels_{};
   bool logic_held_ = false;  ///< for single scans
   std::array<std::int16_t, image::kMaxProcesses> external_alarm_{};
   std::array<image::Quality, image::kMaxSources> source_quality_{};

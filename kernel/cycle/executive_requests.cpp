@@ -5,6 +5,7 @@
 #include "kernel/cycle/executive_queues.hpp"
 #include "kernel/cycle/gate/guarded_places.hpp"
 #include "kernel/cycle/gate/interface_places.hpp"
+#include "kernel/cycle/gate/request_kinds.hpp"
 
 namespace servogate::cycle {
 
@@ -80,6 +81,7 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   context.program_loaded = process < parts_.processes.size() && parts_.processes[process]->loaded();
   for (std::size_t p = 0; p < parts_.processes.size(); ++p)
     if (parts_.processes[p]->stopping()) context.stopping |= 1u << p;
+  context.path_wheel = process < parts_.processes.size() && path_wheels_[process].declared();
   context.homing_runs = homing_.running();
   context.manual_held = manual_held_;
   context.holder = holder_;
@@ -209,6 +211,9 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::reposition:
     case RequestKind::retrace:
       return along_path(request);
+    case RequestKind::path_wheel:
+      path_wheels_[static_cast<std::size_t>(request.process)].take(request);
+      break;
   }
   return Refusal::none;
 }
@@ -226,6 +231,7 @@ Refusal Cycle::carry_out_manual(const Request& request) noexcept {
   const auto process = static_cast<std::size_t>(axes_[axis].process());
   if (request.kind != RequestKind::home && process < parts_.processes.size()) {
     ProcessContext c = context(static_cast<int>(process));
+    path_wheels_[process].let_go();
     parts_.processes[process]->leave_path(request.axis, c);
   }
   const bool begun = request.kind == RequestKind::home ? homing_.start(axes_, homing_mask(request, axes_))
@@ -252,6 +258,7 @@ Refusal Cycle::order(int process, const Request& request) noexcept {
   const auto p = static_cast<std::size_t>(process);
   const std::uint32_t run = image_.processes[p].run;
   ProcessContext c = context(process);
+  if (requests::kLeads.has(request.kind)) path_wheels_[p].let_go();
   const bool done = parts_.processes[p]->order(request, c);
   if (image_.processes[p].run != run) alarms_.run_begins(process);
   return done ? Refusal::none : Refusal::axis_moves;
@@ -283,6 +290,7 @@ void Cycle::reset(const Request& request) noexcept {
   watch_forces();
   for (std::size_t p = 0; ends && p < parts_.processes.size(); ++p) {
     ProcessContext c = context(static_cast<int>(p));
+    path_wheels_[p].let_go();
     parts_.processes[p]->order(request, c);
   }
 }
@@ -387,6 +395,7 @@ void Cycle::handle_plc_requests() noexcept {
     jog_of_plc(axes_[i]);
     follow_handwheel(handwheels_[i], axes_[i]);
   }
+  for (std::size_t p = 0; p < parts_.processes.size(); ++p) follow_path_wheel(path_wheels_[p]);
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (axes_[i].config().auxiliary) move_auxiliary(plc_motion_[i], axes_[i]);
 }
@@ -410,6 +419,12 @@ void Cycle::jog_of_plc(axis::Axis& a) noexcept {
 void Cycle::follow_handwheel(Handwheel& wheel, axis::Axis& a) noexcept {
   wheel.read(image_, a.index());
   if (Request request; wheel.next(request, a)) wheel.answer(request, handle(request));
+  wheel.write(image_);
+}
+
+void Cycle::follow_path_wheel(PathWheel& wheel) noexcept {
+  wheel.read(image_);
+  if (Request request; wheel.next(request, image_)) wheel.answer(request, handle(request));
   wheel.write(image_);
 }
 

@@ -40,6 +40,8 @@ void check_control_death(const LoadResult& loaded, Reading& reading);
 void check_modbus_server(const MachineConfig& machine, Reading& reading);
 /// Pendants against their device files and the axes.
 void check_pendants(const LoadResult& loaded, Reading& reading);
+/// Handwheels that drive programs along their path, against pendants and processes.
+void check_path_wheels(const LoadResult& loaded, Reading& reading);
 /// Spindles on inverters on Modbus.
 void check_inverters(const LoadResult& loaded, Reading& reading);
 /// Bus load and speed of motors against the device files.

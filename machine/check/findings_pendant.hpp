@@ -73,4 +73,34 @@ inline constexpr text::Entry kPendantRing{
     "machine.pendant_ring", "`ring_from` is {0}, but the ring counts to {1} (`ring_range`) only",
     "`ring_from` равно {0}, но кольцо считает лишь до {1} (`ring_range`)"};
 
+inline constexpr text::Entry kPathWheelSource{
+    "machine.path_wheel_source",
+    "`source`: \"{0}\" is none of handwheel1, handwheel2 and the pendants of the machine ({1})",
+    "`source`: «{0}» — не handwheel1, не handwheel2 и не пульт станка ({1})"};
+inline constexpr text::Entry kPathWheelProcess{"machine.path_wheel_process",
+                                               "`process`: {0} is beyond the {1} processes of the machine",
+                                               "`process`: {0} больше числа процессов станка ({1})"};
+inline constexpr text::Entry kPathWheelTwice{
+    "machine.path_wheel_twice", "process {0} has two handwheels for its path; it can follow one",
+    "у процесса {0} два маховичка движения по контуру; он может следовать одному"};
+inline constexpr text::Entry kPathWheelShared{
+    "machine.path_wheel_shared", "\"{0}\" would drive two processes at once: give each its own wheel",
+    "«{0}» вёл бы сразу два процесса: дайте каждому свой маховичок"};
+inline constexpr text::Entry kPathWheelNone{"machine.path_wheel_none",
+                                            "pendant \"{0}\" has no wheel (its device file: `wheel`)",
+                                            "у пульта «{0}» нет маховичка (файл устройства: `wheel`)"};
+inline constexpr text::Entry kPathWheelHealthy{
+    "machine.path_wheel_healthy",
+    "`healthy` is of no effect: the control itself knows whether pendant \"{0}\" is plugged in",
+    "`healthy` не действует: подключён ли пульт «{0}», управление знает само"};
+inline constexpr text::Entry kPathWheelLoss{
+    "machine.path_wheel_loss",
+    "`healthy`: \"{0}\" would stay TRUE while its station is lost. It needs `loss = 0`, and no `hold`",
+    "`healthy`: «{0}» оставался бы TRUE при потере станции. Нужны `loss = 0` и отсутствие `hold`"};
+inline constexpr text::Entry kPathWheelButton{
+    "machine.path_wheel_button",
+    "`buttons`: `path_wheel` chooses the wheel of this pendant, and no [[path_wheel]] has source = \"{0}\"",
+    "`buttons`: `path_wheel` выбирает маховичок этого пульта, но ни в одной [[path_wheel]] нет source = "
+    "«{0}»"};
+
 }  // namespace servogate::machine::finding

@@ -405,6 +405,8 @@ const Section& section_of<MachineConfig>() {
                          "собственные слова G и M станкостроителя"),
       key<&C::modbus_server>("modbus_server", {}, "the Modbus TCP server", "сервер Modbus TCP"),
       key<&C::pendants>("pendant", {}, "hand-held pendants", "выносные пульты"),
+      key<&C::path_wheels>("path_wheel", {}, "handwheels that drive programs along their path",
+                           "маховички движения программы по контуру"),
       key<&C::simulation>("simulation", {}, "what the mocks do; without effect on what is real",
                           "поведение имитаторов; на настоящее не действует"),
   };

@@ -38,6 +38,35 @@ const Section& section_of<PendantConfig>() {
 }
 
 template <>
+const Section& section_of<PathWheelConfig>() {
+  using C = PathWheelConfig;
+  static const Key keys[] = {
+      key<&C::source>("source", {.required = true},
+                      "handwheel1 or handwheel2, a counter of the PLC; or the name of a pendant",
+                      "handwheel1 или handwheel2 — счётчик ПЛК; либо имя пульта"),
+      key<&C::process>("process", {.min = 1, .max = image::kMaxProcesses},
+                       "whose programs it drives along their path",
+                       "процесс, программы которого он ведёт по контуру"),
+      key<&C::full_speed>(
+          "full_speed", {.unit = Unit::per_s, .min = 1, .max = 1e6},
+          "counts of the wheel in a second at which the path has its programmed feed; a wheel "
+          "that is turned faster does not drive it faster",
+          "импульсов маховичка в секунду, при которых контур проходится с "
+          "запрограммированной подачей; более быстрое вращение её не повышает"),
+      key<&C::healthy>("healthy", {.refers = Refers::digital_input},
+                       "input point that is TRUE while the counter means something; FALSE: the wheel is lost",
+                       "вход, TRUE, пока счётчик достоверен; FALSE: маховичок потерян"),
+  };
+  static const Section section{
+      "a handwheel that drives programs along their path; chosen by "
+      "`NC.path_wheel` of the PLC, a button of the pendant or a client",
+      "маховичок, который ведёт программы по контуру; выбирается через "
+      "`NC.path_wheel` ПЛК, кнопкой пульта или клиентом",
+      keys, &default_object<C>};
+  return section;
+}
+
+template <>
 std::span<const std::string_view> choices_of<PendantWheel>() {
   static constexpr std::string_view kNames[] = {"none", "delta", "counter"};
   return kNames;

@@ -83,6 +83,8 @@ const Section& section_of<ModbusServerConfig>();
 template <>
 const Section& section_of<PendantConfig>();
 template <>
+const Section& section_of<PathWheelConfig>();
+template <>
 const Section& section_of<PendantMap>();
 template <>
 const Section& section_of<RunConfig>();

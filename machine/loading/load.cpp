@@ -78,6 +78,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_safety(machine, reading);
   check_modbus_server(machine, reading);
   check_pendants(result, reading);
+  check_path_wheels(result, reading);
   check_gpio_lines(machine, reading);
   check_boards(machine, reading);
   check_gears(machine, reading);

@@ -79,6 +79,45 @@ TEST(PendantWheel, AsksForAsManyStepsAsItWasTurned) {
   EXPECT_FALSE(hand.next());
 }
 
+TEST(PendantWheel, DrivesThePathInsteadOfAnAxisWhileThatIsChosen) {
+  Hand hand(test::with_selectors());
+  hand.view.by_path = true;
+  hand.see();
+  hand.turn(3);
+  hand.turn(-7);
+  ASSERT_TRUE(hand.asks(RequestKind::path_turned));
+  EXPECT_EQ(hand.request.value, -4.0);
+  EXPECT_FALSE(hand.next()) << "no jog";
+  hand.turn(5);
+  hand.view.by_path = false;
+  hand.see();
+  EXPECT_FALSE(hand.next()) << "counts of the path are no jog of an axis";
+  hand.turn(5);
+  EXPECT_FALSE(hand.next()) << "the hand still turns";
+  hand.reading.axis = -1;
+  hand.report();
+  hand.reading.axis = 0;
+  hand.report();
+  hand.turn(2);
+  EXPECT_TRUE(hand.asks(RequestKind::jog)) << "selected anew";
+}
+
+TEST(PendantWheel, CountsAlongThePathNeedTheDeadMan) {
+  const Layout layout = test::with_selectors();
+  Hand hand(layout, {"XYZ", 1.0, layout.button("probe")});
+  hand.view.by_path = true;
+  hand.see();
+  hand.turn(3);
+  EXPECT_FALSE(hand.next());
+  hand.press("probe");
+  hand.turn(3);
+  ASSERT_TRUE(hand.asks(RequestKind::path_turned));
+  hand.turn(2);
+  hand.view.released = false;  // the wired one
+  hand.see();
+  EXPECT_FALSE(hand.next()) << "let go before it was asked for";
+}
+
 TEST(PendantWheel, WhatItTurnedBeforeItWasPluggedInMovesNothing) {
   const Layout layout = test::with_selectors();
   const Rules rules{"XYZ", 1.0, -1};

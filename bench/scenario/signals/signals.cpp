@@ -28,10 +28,11 @@ constexpr std::string_view kDrives[] = {
     "offline",     "not_ready_to_switch_on", "switch_on_disabled", "ready_to_switch_on",
     "switched_on", "operation_enabled",      "quick_stop_active",  "fault_reaction_active",
     "fault"};
-constexpr std::string_view kWaits[] = {
-    "none",          "signal",      "m_acknowledge", "s_acknowledge",    "t_acknowledge", "h_acknowledge",
-    "dwell",         "in_position", "program_stop",  "optional_stop",    "block_end",     "read_in_enable",
-    "operator_hold", "plc_hold",    "feed_enable",   "axis_feed_enable", "override_zero", "spindle_stands"};
+constexpr std::string_view kWaits[] = {"none",          "signal",         "m_acknowledge", "s_acknowledge",
+                                       "t_acknowledge", "h_acknowledge",  "dwell",         "in_position",
+                                       "program_stop",  "optional_stop",  "block_end",     "read_in_enable",
+                                       "operator_hold", "plc_hold",       "feed_enable",   "axis_feed_enable",
+                                       "override_zero", "spindle_stands", "path_wheel"};
 static_assert(std::size(kWaits) == image::kWaitReasons && std::size(kJogEnds) == image::kJogEnds);
 
 constexpr std::string_view kQualities[] = {"never", "good", "stale", "bad"};
@@ -95,6 +96,10 @@ constexpr struct {
     {"starved", "", {}, [](const ProcessStatus& p) { return static_cast<double>(p.starved); }},
     {"state", "", kStates, [](const ProcessStatus& p) { return static_cast<double>(p.state); }},
     {"mode", "", kModes, [](const ProcessStatus& p) { return static_cast<double>(p.mode); }},
+    {"retraced_by", "mm", {}, [](const ProcessStatus& p) { return p.retraced_mm; }},
+    {"wheel", "", kSwitch, [](const ProcessStatus& p) { return on(p.wheel.chosen); }},
+    {"wheel_lost", "", kSwitch, [](const ProcessStatus& p) { return on(p.wheel.lost); }},
+    {"wheel_rate", "%", {}, [](const ProcessStatus& p) { return p.wheel.rate() * 100.0; }},
     {"waits_for", "", kWaits, [](const ProcessStatus& p) { return static_cast<double>(p.wait.reason); }},
 };
 
@@ -129,6 +134,12 @@ constexpr QuantityRow kQuantities[] = {
      "программы процесса 1; NC2. второго ..."},
     {"NC.feed", "mm/s", "speed along the path", "скорость по контуру"},
     {"NC.override", "%", "feed override", "коррекция подачи"},
+    {"NC.retraced_by", "mm", "path from where a held program was driven back to, to where it was held",
+     "путь от места, куда приостановленная программа отведена назад, до места останова"},
+    {"NC.wheel, NC.wheel_lost", "", "it follows its handwheel along the path; that is lost: on or off",
+     "следует маховичку по контуру; он потерян: on или off"},
+    {"NC.wheel_rate", "%", "speed of that handwheel, of the programmed feed; below 0: back",
+     "скорость этого маховичка, от запрограммированной подачи; меньше 0 — назад"},
     {"NC.state", "", "idle, running, held, waiting, stopped_by_alarm, ended, stopped",
      "idle, running, held, waiting, stopped_by_alarm, ended, stopped"},
     {"NC.mode", "", "off, mdi, automatic, step, manual, increment, profile, home",

@@ -27,6 +27,11 @@ const Entry kRetraced{"client.stands-back", "back on its path by {0} mm",
 const Entry kHoldsLater{"client.holds-later",
                         "is held at the end of the thread, or when the tap has left its hole",
                         "будет остановлена в конце резьбы или после выхода метчика из отверстия"};
+const Entry kByWheel{"client.by-wheel", "follows its handwheel along the path: {0} %",
+                     "следует маховичку по контуру: {0} %"};
+const Entry kByWheelLost{"client.by-wheel-lost",
+                         "stands: the handwheel that drives it along its path is lost",
+                         "стоит: маховичок движения по контуру потерян"};
 const Entry kBySpindle{"client.by-spindle", "goes with the spindle, {0} um off its angle",
                        "идёт за шпинделем, отклонение от его угла {0} мкм"};
 const Entry kRestartAt{"client.restart-at", "begins at line {0} of {1}: {2}",
@@ -158,6 +163,9 @@ void print_program(const json& s) {
     print_line(say(kRetraced, {fixed(back.get<double>(), 3)}));
   if (const json off = s.value("off_spindle_mm", json()); off.is_number())
     print_line(say(kBySpindle, {fixed(1000.0 * off.get<double>(), 1)}));
+  if (const json wheel = s.value("path_wheel", json()); wheel.is_object())
+    print_line(wheel.value("lost", false) ? say(kByWheelLost, {})
+                                          : say(kByWheel, {fixed(wheel.value("pct", 0.0), 0)}));
   if (s.value("holds_later", false)) print_line(say(kHoldsLater, {}));
   const std::string program = of(s, "program"), file = of(s, "file"), block = of(s, "block");
   const int line = s.value("line", 0);

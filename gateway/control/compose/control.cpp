@@ -102,6 +102,13 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
     parts.alive_place = alive->place;
   if (const machine::PointConfig* start = m.point(m.run.start_point); start != nullptr)
     parts.start_place = start->place;
+  for (const machine::PathWheelConfig& w : m.path_wheels) {
+    cycle::PathWheelConfig& wheel = parts.path_wheels[static_cast<std::size_t>(w.process - 1)];
+    wheel.source = w.handwheel();
+    wheel.full = w.full_speed;
+    if (const machine::PointConfig* healthy = m.point(w.healthy); healthy != nullptr)
+      wheel.healthy = healthy->place;
+  }
   parts.stopwatch = &c->stopwatch_;
   c->cycle_ = std::make_unique<cycle::Cycle>(std::move(parts));
   c->cycle_->attach(source);

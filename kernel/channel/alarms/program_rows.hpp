@@ -209,10 +209,30 @@ inline constexpr image::AlarmRow kProgramRows[] = {
      image::ResetCondition::reset,
      {"thread.starved", "{9}: the thread was left: the rest of its chain was not planned in time",
       "{9}: резьба прервана: продолжение цепочки не было спланировано вовремя"},
-     "Reduce the load on the computer, or give the chain fewer and longer blocks. Look at the part before you "
+     "Reduce the load on the computer, or give the chain fewer and longer blocks. Look at the part before "
+     "you "
      "go on.",
      "Разгрузите компьютер или составьте цепочку из меньшего числа более длинных кадров. Осмотрите деталь, "
      "прежде чем продолжать."},
+    {alarm::kPathWheelLost,
+     image::Reaction::warn,
+     image::ResetCondition::by_itself,
+     {"wheel.lost", "{9}: the handwheel that drives the path is lost; the path comes to rest",
+      "{9}: маховичок движения по контуру потерян; движение по контуру останавливается"},
+     "Plug the pendant in again, or see the point that `healthy` of [[path_wheel]] names. The path moves "
+     "again "
+     "when the wheel is turned; where the wheel is not chosen any more, the program is held until start.",
+     "Подключите пульт снова или проверьте сигнал, названный в `healthy` таблицы [[path_wheel]]. Движение "
+     "продолжится при вращении маховичка; если выбор маховичка снят, программа стоит до пуска."},
+    {alarm::kPathWheelFast,
+     image::Reaction::warn,
+     image::ResetCondition::by_itself,
+     {"wheel.fast", "{9}: the handwheel is turned at {1} % of its `full_speed`; the path goes at {2} %",
+      "{9}: маховичок вращают с {1} % его `full_speed`; движение по контуру — {2} %"},
+     "The path is no faster than programmed, and the counts beyond that are dropped. Turn more slowly, or "
+     "raise `full_speed` of [[path_wheel]].",
+     "Быстрее запрограммированного контур не проходится, лишние импульсы отбрасываются. Вращайте медленнее "
+     "или увеличьте `full_speed` в [[path_wheel]]."},
 };
 
 }  // namespace servogate::channel

@@ -116,6 +116,7 @@ class Decision {
   bool retrace() noexcept;
   bool along_path() noexcept;
   bool function() noexcept;
+  bool path_wheel() noexcept;
   bool as_it_was_held() noexcept;
   bool auxiliary() noexcept;
   bool move(const Axis& a) noexcept;

@@ -12,7 +12,7 @@ namespace servogate::cycle {
 namespace decision {
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::function;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::path_wheel;
   if (!known)
     refuse(Refusal::unknown_request);
   else if (!may_ask(r_.asker).has(r_.kind))
@@ -41,6 +41,8 @@ bool Decision::decide_kind() noexcept {
       return retrace();
     case RequestKind::function:
       return function();
+    case RequestKind::path_wheel:
+      return path_wheel();
     case RequestKind::jog_stop:
       return r_.axis < 0 || axis_known();
     case RequestKind::zero:

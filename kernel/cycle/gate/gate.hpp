@@ -83,6 +83,7 @@ enum class Refusal : std::uint16_t {
   spindle_differs,  ///< value: rpm of the spindle when the program was held, + clockwise
   tool_differs,     ///< value: the tool that was in the spindle then
   axis_is_spindle,  ///< axis: its drive is a spindle's now
+  no_path_wheel,    ///< the machine file declares no handwheel for the path of this process
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -97,6 +98,7 @@ struct GateContext {
   image::Reaction reaction = image::Reaction::none;  ///< in force
   image::AlarmNumber first_alarm = 0;
   bool program_loaded = false;  ///< of the request's process
+  bool path_wheel = false;      ///< the process of the request has one
   std::uint32_t stopping =
       0;  ///< bit of each process whose program has been ended and whose path still stops
   bool homing_runs = false;

@@ -56,6 +56,16 @@ bool Decision::function() noexcept {
   return !c_.beside.functions_full || refuse(Refusal::function_runs);
 }
 
+/// Choosing it moves nothing: the path goes by its speed, which is 0 while it stands.
+bool Decision::path_wheel() noexcept {
+  if (r_.index >= static_cast<std::uint32_t>(image::kWheelNews))
+    return refuse(Refusal::bad_value, -1, r_.index, image::kWheelNews - 1);
+  const bool chooses = r_.index == static_cast<std::uint32_t>(image::WheelNews::choose);
+  if (!chooses && r_.asker != Asker::pendant)
+    return refuse(Refusal::asker_may_not, -1, static_cast<double>(r_.kind));
+  return c_.path_wheel || refuse(Refusal::no_path_wheel);
+}
+
 /// What the rest of the program counts on.
 bool Decision::as_it_was_held() noexcept {
   const Beside& b = c_.beside;

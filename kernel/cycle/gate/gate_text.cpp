@@ -173,8 +173,11 @@ constexpr text::Entry kTexts[] = {
      "{0} is a spindle now: its M function (`axis_m` of the machine file) makes it an axis first",
      "{0} сейчас работает как шпиндель: сначала переведите его в режим оси функцией M (`axis_m` в файле "
      "станка)"},
+    {"gate.no_path_wheel",
+     "no handwheel drives programs of this process: `[[path_wheel]]` of the machine file declares it",
+     "у этого процесса нет маховичка движения по контуру: его объявляет `[[path_wheel]]` файла станка"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::axis_is_spindle) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::no_path_wheel) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 

@@ -43,20 +43,25 @@ inline constexpr Kinds kJogs{jog_increment, jog_continuous, keep_alive};
 inline constexpr Kinds kResets{reset, acknowledge};
 inline constexpr Kinds kProgram{start, step, resume, mode, override_feed};
 inline constexpr Kinds kPlaces{set_place, force, release_force, logic, logic_scan};
-inline constexpr Kinds kPanel = kStops | kJogs | kResets | kProgram |
-                                Kinds{power, home, zero, assign, tables, reposition, retrace, function};
+inline constexpr Kinds kPanel =
+    kStops | kJogs | kResets | kProgram |
+    Kinds{power, home, zero, assign, tables, reposition, retrace, function, path_wheel};
 /// Of the auxiliary axes, the PLC's alone.
 inline constexpr Kinds kMoves{move_absolute, move_relative, move_velocity, torque};
 inline constexpr Kinds kAuxiliary = kMoves | Kinds{axis_power, axis_home, axis_stop, axis_reset};
 inline constexpr Kinds kBegins = kJogs | kMoves | Kinds{home,       start,     step,       resume,  power,
                                                         axis_power, axis_home, reposition, retrace, function};
 
-/// Never too old. Of these kinds a value of 0 only takes away: power off, an override of 0.
+/// Never too old. Of these kinds a value of 0 only takes away: power off, an override of 0, a wheel that is
+/// lost.
 inline constexpr Kinds kTakesAway = kStops | Kinds{reset, axis_stop, axis_reset};
-inline constexpr Kinds kTakesAwayAtZero{power, axis_power, override_feed};
+inline constexpr Kinds kTakesAwayAtZero{power, axis_power, override_feed, path_wheel};
 
 /// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
-inline constexpr Kinds kOfProcess = kProgram | Kinds{hold, zero, assign, reposition, retrace, function};
+inline constexpr Kinds kOfProcess =
+    kProgram | Kinds{hold, zero, assign, reposition, retrace, function, path_wheel};
+/// Whoever asks for them leads the program from then on, and not the wheel of its path.
+inline constexpr Kinds kLeads{hold, stop, reset, start, step, resume, reposition, retrace, function};
 /// What may bring its mode along.
 inline constexpr Kinds kWithMode{home, jog_increment, jog_continuous, start, step};
 

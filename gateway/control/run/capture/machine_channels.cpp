@@ -65,6 +65,10 @@ constexpr std::array kProcessFields = std::to_array<Field<ProcessStatus>>({
     {"state", "", [](const ProcessStatus& p) { return static_cast<double>(p.state); }},
     {"mode", "", [](const ProcessStatus& p) { return static_cast<double>(p.mode); }},
     {"wait", "", [](const ProcessStatus& p) { return static_cast<double>(p.wait.reason); }},
+    {"wheel", "%",
+     [](const ProcessStatus& p) {
+       return p.wheel.chosen ? 100.0 * p.wheel.rate() : std::numeric_limits<double>::quiet_NaN();
+     }},
     {"starved", "", [](const ProcessStatus& p) { return static_cast<double>(p.starved); }},
 });
 

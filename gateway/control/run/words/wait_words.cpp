@@ -110,6 +110,12 @@ constexpr Row kRows[] = {
       "Program S and M3 before the motion; see in {2} what the spindle's enable waits for.",
       "Задайте S и M3 до движения; посмотрите в {2}, чего ждёт разрешение шпинделя."},
      true},
+    {"path_wheel",
+     {"wait.path-wheel", "does not move: the handwheel that drives it along its path stands",
+      "не движется: маховичок движения по контуру стоит"},
+     {"wait.turn-wheel", "Turn the wheel, or choose another mode: then `servogate start` goes on.",
+      "Вращайте маховичок или снимите его выбор: тогда продолжит `servogate start`."},
+     true},
 };
 static_assert(std::size(kRows) == image::kWaitReasons);
 
@@ -179,7 +185,7 @@ bool is_operators(WaitReason reason) {
 
 bool has_place(WaitReason reason) {
   return reason != WaitReason::none && reason != WaitReason::dwell && reason != WaitReason::in_position &&
-         reason != WaitReason::spindle_stands && !is_operators(reason);
+         reason != WaitReason::spindle_stands && reason != WaitReason::path_wheel && !is_operators(reason);
 }
 
 std::string named(const WaitWords& w) { return w.symbol.empty() ? w.place : w.symbol + " (" + w.place + ")"; }

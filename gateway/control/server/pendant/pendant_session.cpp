@@ -75,6 +75,8 @@ PendantSession::PendantSession(const machine::LoadResult& loaded, const machine:
     axes_.push_back(axis);
   }
   process_ = std::max(process_, 0);
+  for (const machine::PathWheelConfig& w : loaded.machine.path_wheels)
+    if (w.source == config.name) path_process_ = w.process - 1;
   if (!config.dead_man_point.empty())
     if (const machine::PointConfig* point = loaded.machine.point(config.dead_man_point))
       dead_man_ = point->place;
@@ -122,6 +124,7 @@ void PendantSession::take_news(Nanoseconds now) {
         slept_ = false;
         reader_.restart();
         hands_.lost();
+        tell_of_wheel();
         if (plugged_)
           tell(pendant_says::kCame, {config_.name, news.words});
         else
@@ -129,6 +132,14 @@ void PendantSession::take_news(Nanoseconds now) {
         break;
     }
   }
+}
+
+/// Whether counts of its wheel can come at all: the path of a program may wait for them.
+void PendantSession::tell_of_wheel() {
+  if (path_process_ < 0) return;
+  using What = ask::PathWheel::What;
+  const auto what = plugged_ ? What::here : What::lost;
+  urgent_.push_back({asks_.question(ask::PathWheel{path_process_, what, 0.0}), {}});
 }
 
 void PendantSession::observe(const image::ProcessImage& image, Nanoseconds now) {
@@ -140,6 +151,7 @@ void PendantSession::observe(const image::ProcessImage& image, Nanoseconds now) 
   const image::ProcessStatus& process = image.processes[static_cast<std::size_t>(process_)];
   view_.running = runs(process.state) && !waits_for_start(process);
   view_.held = process.state == image::ProcessState::held;
+  view_.by_path = path_process_ >= 0 && image.processes[static_cast<std::size_t>(path_process_)].wheel.chosen;
   feed_mm_s_ = view_.running ? process.feed_mm_s : 0.0;
   view_.override_percent = process.override_ratio * 100.0;
   view_.released = now - seen_at_ <= kStale && (!dead_man_ || image.packets.number(*dead_man_) != 0.0);
@@ -196,6 +208,14 @@ ask::Command PendantSession::command_of(const Request& request) const {
       return ask::Override{request.value, process_};
     case RequestKind::mdi:
       return ask::Mdi{*request.text, process_};
+    case RequestKind::path_wheel:
+    case RequestKind::path_turned: {
+      using What = ask::PathWheel::What;
+      const What what = request.kind == RequestKind::path_turned ? What::turned
+                        : request.value != 0.0                   ? What::choose
+                                                                 : What::leave;
+      return ask::PathWheel{path_process_ < 0 ? process_ : path_process_, what, request.value};
+    }
   }
   return ask::Stop{};
 }

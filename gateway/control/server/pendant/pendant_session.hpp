@@ -44,6 +44,7 @@ class PendantSession {
   };
   void take_news(image::Nanoseconds now);
   void take_report(const pendant::ReportWriter::Bytes& report, image::Nanoseconds now);
+  void tell_of_wheel();
   void observe(const image::ProcessImage& image, image::Nanoseconds now);
   void take_answers(image::Nanoseconds now);
   void told_refusal(const Reply& reply, image::Nanoseconds now);
@@ -63,6 +64,7 @@ class PendantSession {
   pendant::Hands hands_{layout_, rules_};
   std::vector<Axis> axes_;  ///< by Layout::axes
   int process_ = -1;        ///< whose programs it starts, from 0
+  int path_process_ = -1;   ///< whose programs its wheel drives along their path, -1: none
   std::optional<image::Place> dead_man_;
   pendant::View view_;
   double feed_mm_s_ = 0.0;

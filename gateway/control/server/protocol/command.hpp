@@ -128,6 +128,13 @@ struct Retrace {
   std::optional<double> mm, blocks;
   std::optional<double> feed_mm_min;  ///< none: as programmed
 };
+/// The handwheel that drives a program along its path.
+struct PathWheel {
+  enum class What : std::uint8_t { choose, leave, turned, here, lost };
+  int process = 0;
+  What what = What::choose;
+  double counts = 0.0;  ///< of `turned`, + forward
+};
 /// Another process' programs move the axis from now on.
 struct Assign {
   std::string axis;
@@ -186,11 +193,12 @@ struct PlcWatch {
 };
 struct PlcList {};
 
-using Command = std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero,
-                             Override, Load, Start, Restart, Step, Mdi, Touch, Resume, Return, Retrace,
-                             Assign, Tables, TableSet, TableClear, TableUndo, TableImport, TableExport, Reset,
-                             Acknowledge, Input, SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down,
-                             PlcLoad, PlcForce, PlcRelease, PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
+using Command =
+    std::variant<Status, Buses, Alarms, History, SdoRead, Power, Home, Jog, JogContinuous, Zero, Override,
+                 Load, Start, Restart, Step, Mdi, Touch, Resume, Return, Retrace, Assign, PathWheel, Tables,
+                 TableSet, TableClear, TableUndo, TableImport, TableExport, Reset, Acknowledge, Input,
+                 SetPlace, Stop, QuickStop, Hold, JogStop, KeepAlive, Down, PlcLoad, PlcForce, PlcRelease,
+                 PlcHold, PlcStep, PlcGo, PlcWatch, PlcList>;
 
 template <typename... Kinds>
 bool is_any(const Command& command) noexcept {

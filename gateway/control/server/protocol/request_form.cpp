@@ -321,6 +321,11 @@ constexpr struct {
      [](Fields& f) -> Command {
        return ask::Override{f.needed("value"), f.process(0)};
      }},
+    {"path_wheel",
+     [](Fields& f) -> Command {
+       using What = ask::PathWheel::What;
+       return ask::PathWheel{f.process(0), f.switched("value") ? What::choose : What::leave, 0.0};
+     }},
     {"load",
      [](Fields& f) -> Command {
        return ask::Load{f.text("program"), f.text("dialect"), f.process(0)};

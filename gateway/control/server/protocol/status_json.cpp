@@ -91,6 +91,9 @@ json json_of(const ProcessReport& p) {
           {"holds_later", p.status.holds_later},
           {"off_spindle_mm", p.status.by_spindle ? json(measure(p.status.off_spindle_mm)) : json()},
           {"tap_overshoot_mm", measure(p.status.tap_overshoot_mm)},
+          {"path_wheel", p.status.wheel.chosen ? json{{"pct", measure(p.status.wheel.rate() * 100.0)},
+                                                      {"lost", p.status.wheel.lost}}
+                                               : json()},
           {"touched", p.touched ? json{{"axis", p.touched->axis}, {"places", p.touched->places}} : json()},
           {"tool", p.status.tool}};
 }

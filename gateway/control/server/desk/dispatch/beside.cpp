@@ -39,6 +39,14 @@ const Entry kNoSpeed{"beside.no-speed", "the spindle needs its speed in the same
 const Entry kStands{"beside.spindle-stands", "the spindle stands: M3 or M4 turns it",
                     "шпиндель стоит: его включает M3 или M4"};
 
+const Entry kWheelChosen{"said.path-wheel", "the program follows its handwheel along the path",
+                         "программа следует маховичку по контуру"};
+const Entry kWheelLeft{"said.path-wheel-left",
+                       "the program does not follow its handwheel any more; one that runs is held",
+                       "программа больше не следует маховичку; выполняемая приостановлена"};
+const Entry kWheelTold{"said.path-wheel-told", "the handwheel of the path is heard",
+                       "сообщение маховичка принято"};
+
 image::Request function(image::Function what, double value) {
   image::Request r;
   r.kind = RequestKind::function;
@@ -112,6 +120,24 @@ Outcome Dispatch::take(const ask::Return& wanted) {
   r.process = static_cast<std::int8_t>(wanted.process);
   r.velocity = wanted.feed_mm_min.value_or(0.0) / 60.0;
   return ask(r) ? good(kReturns) : refusal_;
+}
+
+Outcome Dispatch::take(const ask::PathWheel& wanted) {
+  using What = ask::PathWheel::What;
+  using image::WheelNews;
+  if (!process_known(wanted.process)) return refusal_;
+  const bool chooses = wanted.what == What::choose || wanted.what == What::leave;
+  image::Request r;
+  r.kind = RequestKind::path_wheel;
+  r.process = static_cast<std::int8_t>(wanted.process);
+  r.index = static_cast<std::uint32_t>(chooses                       ? WheelNews::choose
+                                       : wanted.what == What::turned ? WheelNews::turned
+                                                                     : WheelNews::here);
+  r.value = wanted.what == What::turned                                ? wanted.counts
+            : wanted.what == What::choose || wanted.what == What::here ? 1.0
+                                                                       : 0.0;
+  if (!ask(r)) return refusal_;
+  return good(!chooses ? kWheelTold : wanted.what == What::choose ? kWheelChosen : kWheelLeft);
 }
 
 Outcome Dispatch::take(const ask::Retrace& wanted) {

@@ -83,6 +83,7 @@ class Dispatch {
   Outcome take(const ask::JogContinuous&);
   Outcome take(const ask::Zero&);
   Outcome take(const ask::Override&);
+  Outcome take(const ask::PathWheel&);
   Outcome take(const ask::Load&);
   Outcome take(const ask::Start& wanted) { return begin(false, wanted.process); }
   Outcome take(const ask::Step& wanted) { return begin(true, wanted.process); }
