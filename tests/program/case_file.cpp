@@ -120,6 +120,8 @@ class Reader {
           if (case_.machine.axes[a].letter == letter) case_.start[a] = number;
     } else if (name[0] == "coupled") {
       case_.machine.coupled_max_rpm = std::stod(value);
+    } else if (name[0] == "spindle_angle") {
+      case_.machine.spindle_angle = value == "measured";
     } else if (name[0] == "spindle_axis") {
       const auto words = words_of(value);
       for (std::size_t a = 0; a < case_.machine.axes.size(); ++a)

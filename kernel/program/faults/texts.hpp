@@ -159,6 +159,7 @@ enum class Fault : std::uint8_t {
   axis_is_spindle,
   spindle_is_axis,
   spindle_axis_coupled,
+  spindle_no_angle,
 };
 
 /// All texts, in the order of Fault.

@@ -38,6 +38,7 @@ program::MachineModel program_model(const machine::MachineConfig& machine, int p
   if (const machine::SpindleConfig* spindle = machine.spindle_of_process(process); spindle != nullptr) {
     model.spindle_min_rpm = spindle->min_speed;
     model.spindle_max_rpm = spindle->max_speed;
+    model.spindle_angle = spindle->has_encoder() && !spindle->drive.empty();
     model.spindle_axis = machine.axis_index(spindle->axis);
     model.spindle_axis_on_m = static_cast<int>(spindle->axis_m[0]);
     model.spindle_axis_off_m = static_cast<int>(spindle->axis_m[1]);

@@ -15,6 +15,10 @@ void Output::check_place(const Position& to) const {
 
 void Output::check_turning() const { refuse_turning(static_cast<int>(block_.body) + 1); }
 
+void Output::check_angle() const {
+  if (!machine_.spindle_angle) fail(Fault::spindle_no_angle, static_cast<int>(block_.body) + 1);
+}
+
 void Output::refuse_turning(int column) const {
   if (!state_.motion.spindle_is_axis) return;
   fail(Fault::spindle_is_axis, column,

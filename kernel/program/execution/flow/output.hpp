@@ -34,9 +34,11 @@ class Output {
          const MachineModel& machine)
       : queue_(queue), flow_(flow), block_(block), process_(process), state_(state), machine_(machine) {}
 
-  /// Throws for what a spindle cannot do as an axis, and an axis as a spindle.
+  /// Throws for what a spindle cannot do as an axis, an axis as a spindle, and a spindle whose angle nobody
+  /// measures.
   template <typename What>
   void check(const What& what) const {
+    if constexpr (std::is_same_v<What, Thread> || std::is_same_v<What, SpindleMark>) check_angle();
     if (machine_.spindle_axis < 0) return;
     if constexpr (requires { what.to[0]; }) check_place(what.to);
     if constexpr (requires { what.feed.unit; })
@@ -68,6 +70,7 @@ class Output {
   // output.cpp
   void check_place(const Position& to) const;
   void check_turning() const;
+  void check_angle() const;
 
   CommandQueue& queue_;
   const Flow& flow_;
