@@ -108,10 +108,7 @@ void Reader::take_run() {
 void Reader::cruise(const path::Cruise& cruise) {
   take_run();
   sample(cruise.seconds, [&](double t) {
-    path::Vector x{};
-    for (std::size_t i = 0; i < static_cast<std::size_t>(config_.axis_count); ++i)
-      x[i] = cruise.from[i] + t / cruise.seconds * (cruise.to[i] - cruise.from[i]);
-    return x;
+    return path::position(cruise.piece, t / cruise.seconds * cruise.piece.length, config_.axis_count);
   });
 }
 

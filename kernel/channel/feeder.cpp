@@ -2,6 +2,7 @@
 #include "kernel/channel/feeder.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
@@ -13,6 +14,9 @@ namespace {
 
 constexpr int kCommandsPerWork = 64;
 constexpr int kWorksBeside = 64;
+constexpr double kAmple = 1.2;       // s that lie ahead: the motion goes on in them while more is planned
+constexpr double kLeastSpare = 0.2;  // s of them that a round may take at an override of 150 %
+constexpr double kPlannedBeside = 2.0;
 constexpr std::uint32_t kSpareEvents = 8;
 
 /// Something has been done when it is through: STEP stops behind it. A programmed stop waits by itself.
@@ -87,7 +91,7 @@ program::Interpreter Feeder::manual_interpreter(const program::Position& at) con
 bool Feeder::work() {
   take_orders();
   supply();
-  read_and_plan();
+  read_and_plan(kCommandsPerWork, std::numeric_limits<double>::infinity());
   ways_.work();
   return wants_more();
 }
@@ -95,7 +99,12 @@ bool Feeder::work() {
 Reading Feeder::reading(std::optional<double> driven) const {
   if (ordered() || supplied_event_ != 0 || ways_.waits()) return Reading::now;
   if (!wants_more() && !planner_.waits()) return Reading::nothing;
-  return planner_.ample(driven) ? Reading::beside : Reading::now;
+  return planner_.ahead(driven) >= kAmple ? Reading::beside : Reading::now;
+}
+
+double Feeder::spare(std::optional<double> driven) const {
+  // Half of it: at an override of 150 % a quarter of what lies ahead is left at the end.
+  return std::max(kLeastSpare, (planner_.ahead(driven) - kAmple) / 2.0);
 }
 
 void Feeder::hold() noexcept {
@@ -110,15 +119,15 @@ void Feeder::let_go() noexcept {
   link_.at_once.let_go();
 }
 
-void Feeder::work_beside() {
-  for (int n = 0; n < kWorksBeside && (n == 0 || wants_more()); ++n) read_and_plan();
+void Feeder::work_beside(double seconds) {
+  read_and_plan(kWorksBeside * kCommandsPerWork, planner_.planned() + kPlannedBeside * seconds);
 }
 
-void Feeder::read_and_plan() {
+void Feeder::read_and_plan(int commands, double planned) {
   // What is read is planned at once: a few long elements are enough, and the planner wants nothing while it
   // has something to publish.
   planner_.work();
-  for (int n = 0; n < kCommandsPerWork && wants_more(); ++n) {
+  for (int n = 0; n < commands && wants_more() && planner_.planned() < planned; ++n) {
     read_one();
     planner_.work();
   }

@@ -161,8 +161,12 @@ class Feeder {
   /// Between these work_beside() sees what is given back as it is now.
   void hold() noexcept;
   void let_go() noexcept;
-  /// As work() until nothing more is wanted, without taking orders. Bounded.
-  void work_beside();
+  /// For how long the cycle needs nothing of what reading beside it gives, s of the machine; at least 0.2
+  /// where reading() says beside.
+  double spare(std::optional<double> driven) const;
+  /// As work() until nothing more is wanted, or until twice `seconds` of motion are planned, so that a round
+  /// which may take that long has little more to do than the next one. Takes no orders. Bounded.
+  void work_beside(double seconds);
 
   /// What its programs have said so far; Event::code of messages, warnings and errors are numbers in it. For
   /// any thread outside the cycle.
@@ -181,7 +185,8 @@ class Feeder {
   enum class State { idle, feeding, syncing, probing, ended };
 
   bool wants_more() const;
-  void read_and_plan();
+  /// Up to so many commands, until so much is planned.
+  void read_and_plan(int commands, double planned);
   void take_orders();
   void begin(const FeederOrder& order);
   void read_one();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernel/path/law/course_planning.hpp"
+#include "kernel/path/law/forecast.hpp"
 #include "kernel/path/law/planning.hpp"
 #include "kernel/path/shape/contour.hpp"
 #include "kernel/path/shape/gather.hpp"
@@ -63,13 +64,17 @@ std::vector<Element> rest_of(const Element& e, const Piece& piece, double s, int
 
 /// Shape, bound, law and track, one behind the other; two laws, chosen from rest to rest.
 struct Planner::Impl final : ContourSink {
-  Impl(const Config& c, Track& track, For what)
+  Impl(const Config& c, Track& track, MomentSink* forecast)
       : config(c),
         publisher(track),
         law(c, track.pieces.capacity(), publisher),
         contour(c, *this),
-        course(c, what == For::forecast, publisher),
-        gather(c, course) {}
+        course(law_of_courses(c, forecast)),
+        gather(c, *course) {}
+  std::unique_ptr<CourseLaw> law_of_courses(const Config& c, MomentSink* forecast) {
+    if (forecast != nullptr) return std::make_unique<CourseForecast>(c, *forecast, publisher);
+    return std::make_unique<CoursePlanning>(c, publisher);
+  }
 
   void put(const Piece& piece, const Pace& pace) override { law.append(piece, bound(config, piece, pace)); }
   void rest(bool confirm) override { law.rest(confirm); }
@@ -128,7 +133,7 @@ struct Planner::Impl final : ContourSink {
   Publisher publisher;
   Planning law;
   Contour contour;
-  CoursePlanning course;
+  std::unique_ptr<CourseLaw> course;
   Gather gather;
   std::uint32_t marks = 0;
   Flaw flaw = Flaw::none;
@@ -223,14 +228,14 @@ void Planner::Impl::put_on_course(const Element& e, const Piece& piece) {
   if (piece.length == 0.0 && goes_on(e)) return;  // it changes nothing
   on_course.push_back({{e, piece}, course_length});
   course_length += piece.length;
-  while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= course.sure())
+  while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= course->sure())
     on_course.pop_front();
 }
 
 /// No law was found for what comes next: behind the place where the course rests the run goes on by spans.
 bool Planner::Impl::fall_back() {
-  if (run != Run::course || !course.broken()) return false;
-  const CoursePlanning::Rest rest = course.rest_place();
+  if (run != Run::course || !course->broken()) return false;
+  const CourseLaw::Rest rest = course->rest_place();
   while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= rest.place)
     on_course.pop_front();
   const Waiting first = on_course.front().what;
@@ -238,7 +243,7 @@ bool Planner::Impl::fall_back() {
   on_course.pop_front();
   const Vector from = rest.x ? *rest.x : path::position(first.piece, s, config.axis_count);
   unasked_rest = first.element.tag;
-  course.restart();
+  course->restart();
   gather.restart(at);
   contour.restart(from);
   law.begin_at(publisher.next().piece, publisher.planned());
@@ -284,8 +289,8 @@ void Planner::Impl::finish() {
   end_run();
 }
 
-Planner::Planner(const Config& config, Track& track, For what)
-    : impl_(std::make_unique<Impl>(config, track, what)) {}
+Planner::Planner(const Config& config, Track& track, MomentSink* forecast)
+    : impl_(std::make_unique<Impl>(config, track, forecast)) {}
 Planner::~Planner() = default;
 
 Track::Begin Planner::restart(const Vector& at) {
@@ -293,7 +298,7 @@ Track::Begin Planner::restart(const Vector& at) {
   const Track::Begin begin = p.publisher.next();
   p.contour.restart(at);
   p.law.restart();
-  p.course.restart();
+  p.course->restart();
   p.forget();
   p.at = at;
   p.mark(Entry::Kind::restart, 0, {});
@@ -328,10 +333,12 @@ bool Planner::wants_more() const { return impl_->publisher.wants_more(); }
 
 bool Planner::waits() const { return impl_->publisher.waits(); }
 
-bool Planner::ample(std::optional<double> driven) const { return impl_->publisher.ample(driven); }
+double Planner::ahead(std::optional<double> driven) const { return impl_->publisher.ahead(driven); }
+
+double Planner::planned() const { return impl_->publisher.planned(); }
 
 void Planner::work() {
-  impl_->course.work();
+  impl_->course->work();
   impl_->fall_back();
   impl_->publisher.work();
 }

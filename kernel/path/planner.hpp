@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "kernel/path/law/moment.hpp"
 #include "kernel/path/track/track.hpp"
 
 namespace servogate::path {
@@ -15,12 +16,9 @@ namespace servogate::path {
 /// real-time safe.
 class Planner {
  public:
-  enum class For : std::uint8_t {
-    motion,
-    forecast,  ///< the time is wanted: courses have no pieces, knots and stops, and cannot be followed
-  };
-  /// All positions are path coordinates, see Config::transformation.
-  Planner(const Config& config, Track& track, For what = For::motion);
+  /// All positions are path coordinates, see Config::transformation. `forecast`: courses are foretold there,
+  /// have no pieces, knots and stops, and cannot be followed (CourseForecast).
+  Planner(const Config& config, Track& track, MomentSink* forecast = nullptr);
   ~Planner();
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
@@ -64,9 +62,11 @@ class Planner {
 
   /// Something waits for room in the track.
   bool waits() const;
-  /// What is in the track is enough for a second of motion, at an override of 100 %: whoever adds and works
-  /// beside it has time. `driven`: Follower::driven().
-  bool ample(std::optional<double> driven) const;
+  /// For how long what is in the track moves at an override of 100 %, s; 0: not at all, or it is not known.
+  /// `driven`: Follower::driven().
+  double ahead(std::optional<double> driven) const;
+  /// Sum of the times of all that is final, s; it only grows.
+  double planned() const;
 
   /// End of the elements added so far.
   const Vector& position() const;

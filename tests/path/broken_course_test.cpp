@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "kernel/path/law/course_planning.hpp"
-#include "kernel/path/path_time.hpp"
 #include "kernel/path/track/publisher.hpp"
 #include "tests/path/rig/driven_path.hpp"
 
@@ -60,10 +59,6 @@ TEST(BrokenCourse, without_a_law_for_what_comes_next_rests_says_where_and_goes_o
     std::vector<Vector>& way = ways.emplace_back();
     for (const Sample& s : m.trip.samples) way.push_back(s.position);
   }
-  PathTime time(p.config, p.start);
-  for (const Element& e : p.elements) ASSERT_TRUE(time.add(e));
-  time.rest();
-  EXPECT_NEAR(time.seconds(), 0.001 * static_cast<double>(ways[0].size()), 0.5) << "about, told beforehand";
   EXPECT_EQ(ways[0], ways[1]) << "when the elements came does not matter";
   EXPECT_EQ(ways[0], ways[2]);
 }
@@ -155,7 +150,7 @@ TEST(BrokenCourse, that_is_broken_rests_in_one_place_however_it_is_held_and_what
     Track track(config);
     Publisher publisher(track);
     Breaking breaking(publisher);
-    CoursePlanning course(config, false, breaking);
+    CoursePlanning course(config, breaking);
     Gather gather(config, course);
     Follower follower(config, track);
     Entry marker;

@@ -143,6 +143,81 @@ TEST(DrivenCourse, is_held_in_a_cruise_and_before_and_behind_it) {
   }
 }
 
+/// A line, three turns of 20 mm, and a line on.
+std::vector<Element> helix(double feed) {
+  Element turns = arc_to(30, 0, 30, 20, 3 * 360, feed);
+  turns.to[2] = -6;
+  return {line_to(30, 0, 0, feed), turns, line_to(60, 0, -6, feed)};
+}
+
+TEST(DrivenCourse, of_a_helix_is_planned_at_its_ends_alone_and_keeps_to_it_in_the_middle) {
+  Machine m;
+  load(m, helix(40));
+  m.planner.work();
+  const double seconds = 437.0 / 40.0;
+  EXPECT_LE(m.track.knots.written(), 0.3 * seconds / 0.004) << "of the knots that a law needs";
+  ASSERT_TRUE(m.until(FollowerState::idle));
+  EXPECT_LE(m.most(), 1.001);
+  double off = 0.0;
+  int seen = 0;
+  for (const Sample& s : m.trip.samples) {
+    if (s.position[2] > -0.5 || s.position[2] < -5.5) continue;
+    ++seen;
+    off = std::max(off, std::abs(std::hypot(s.position[0] - 30, s.position[1] - 20) - 20));
+    EXPECT_NEAR(s.feed, 40.0, 0.05);
+  }
+  EXPECT_GE(seen, 7000);
+  EXPECT_LE(off, 1e-5) << "mm, of 1.5 um that are allowed";
+  EXPECT_NEAR(m.last.position[0], 60.0, 1e-9);
+}
+
+TEST(DrivenCourse, of_a_helix_is_held_at_once_and_goes_on) {
+  for (int at = 300; at < 11000; at += 893) {
+    Machine m;
+    load(m, helix(40));
+    for (int k = 0; k < at; ++k) m.step();
+    m.follower.hold();
+    int cycles = 1;
+    while (m.step().state == FollowerState::holding) ++cycles;
+    EXPECT_LE(cycles, 250) << at;
+    m.follower.set_override(0.6);
+    m.follower.resume();
+    for (int k = 0; k < 800; ++k) m.step();
+    m.follower.set_override(1.3);
+    ASSERT_TRUE(m.until(FollowerState::idle)) << at;
+    EXPECT_NEAR(m.last.position[0], 60.0, 1e-9);
+    EXPECT_LE(m.most(), 1.001) << at;
+  }
+}
+
+TEST(DrivenCourse, above_a_hundred_per_cent_on_an_arc_is_held_within_160_ms_and_soon_rests) {
+  double way = 0.0;
+  int holds = 0, longest = 0;
+  for (int change = 1000; change < 3000; change += 487)
+    for (const int after : {20, 60, 100, 300, 700}) {
+      Machine m;
+      for (int k = 0; k < 8; ++k) ASSERT_TRUE(m.planner.add(arc_to(0, 0, 60, 0, 360, 100)));
+      m.planner.finish();
+      for (int k = 0; k < change; ++k) m.step();
+      m.follower.set_override(1.5);
+      for (int k = 0; k < after; ++k) m.step();
+      m.follower.hold();
+      int waits = 0;
+      double feed = m.last.feed;
+      for (bool slower = false; m.step().state == FollowerState::holding; feed = m.last.feed) {
+        slower = slower || m.last.feed < feed - 1e-6;
+        waits += slower ? 0 : 1;
+        way += 0.001 * m.last.feed;
+      }
+      EXPECT_EQ(m.last.state, FollowerState::held);
+      EXPECT_LE(m.most(), 1.001) << change << " " << after;
+      longest = std::max(longest, waits);
+      ++holds;
+    }
+  EXPECT_LE(longest, 160);
+  EXPECT_LT(way / holds, 26.0) << "a line would take 18.75 mm from 150 mm/s";
+}
+
 TEST(DrivenCourse, follows_every_override_where_the_feed_is_what_binds) {
   Machine m;
   std::vector<Element> blocks;
@@ -380,23 +455,11 @@ TEST(DrivenCourse, takes_no_longer_than_spans_by_more_than_the_reserve) {
     RandomProgram p = random_program(seed, {seed % 3 == 0 ? 80 : 8, true, true});
     const auto seconds = [&](Law law) {
       p.config.law = law;
-      PathTime time(p.config, p.start);
-      for (const Element& e : p.elements) EXPECT_TRUE(time.add(e));
-      time.rest();
-      return time.seconds();
+      return estimate(p.config, p.start, p.elements).seconds;
     };
     const double spans = seconds(Law::spans);
     EXPECT_LE(seconds(Law::fitting), spans * (1.0 + p.config.reserve) + 0.01) << seed;
   }
-}
-
-TEST(DrivenCourse, has_its_time_told_beforehand) {
-  const Config config = course_mill();
-  const std::vector<Element> blocks = wave(1500, 100);
-  PathTime time(config, {});
-  for (const Element& e : blocks) ASSERT_TRUE(time.add(e));
-  time.rest();
-  EXPECT_NEAR(estimate(config, {}, blocks).seconds, time.seconds(), 0.0021);
 }
 
 }  // namespace

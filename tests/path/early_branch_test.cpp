@@ -263,7 +263,7 @@ Waits judge(const PublishedCourse& course, const Wishes& wishes, std::uint64_t s
     }
     on = along.step(target) || along.motion.rate() < 0.0 || target <= 0.0;
     if (!turns && along.motion.rate() < 0.0) {
-      ADD_FAILURE() << "turns round in cycle " << cycle;
+      ADD_FAILURE() << "turns round in cycle " << cycle << ", rate " << along.motion.rate();
       return longest;
     }
     const double coming = along.motion.wanted();

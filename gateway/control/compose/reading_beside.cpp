@@ -7,8 +7,7 @@
 namespace servogate::gateway {
 namespace {
 
-/// Planner::ample() allows for it.
-constexpr image::Nanoseconds kRound_ns = 200 * image::kMillisecond;
+constexpr double kLongest_s = 2.0;
 
 }  // namespace
 
@@ -56,10 +55,10 @@ ReadingBeside::ReadingBeside(std::span<const std::unique_ptr<channel::Process>> 
                              std::unique_ptr<RoundWorker> worker)
     : processes_(processes),
       reading_(reading),
-      round_cycles_(std::max<image::Nanoseconds>(1, kRound_ns / period_ns)),
+      period_s_(static_cast<double>(period_ns) * 1e-9),
       round_([this] {
         const std::scoped_lock lock(reading_);
-        for (const auto& process : processes_) process->work_beside();
+        for (const auto& process : processes_) process->work_beside(round_s_);
       }),
       worker_(std::move(worker)) {}
 
@@ -74,6 +73,15 @@ channel::Reading ReadingBeside::needed() const {
   channel::Reading most = channel::Reading::nothing;
   for (const auto& process : processes_) most = std::max(most, process->reading());
   return most;
+}
+
+void ReadingBeside::begin_round(std::int64_t cycle) {
+  round_s_ = kLongest_s;
+  for (const auto& process : processes_)
+    if (process->reading() == channel::Reading::beside) round_s_ = std::min(round_s_, process->spare());
+  for (const auto& process : processes_) process->begin_beside();
+  ends_ = cycle + std::max(std::int64_t{1}, static_cast<std::int64_t>(round_s_ / period_s_));
+  under_way_ = true;
 }
 
 void ReadingBeside::end_round() {
@@ -97,11 +105,9 @@ void ReadingBeside::before_cycle(std::int64_t cycle) {
         for (const auto& process : processes_) process->work();
         return;
       case channel::Reading::beside:
-        for (const auto& process : processes_) process->begin_beside();
+        begin_round(cycle);
     }
   }
-  under_way_ = true;
-  ends_ = cycle + round_cycles_;
   worker_->start(round_);
 }
 

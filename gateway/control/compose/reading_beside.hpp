@@ -56,9 +56,9 @@ std::unique_ptr<RoundWorker> round_worker();
 
 /// Reading ahead in virtual time, in all processes. What the next cycle needs is read before it. While the
 /// motion has enough ahead, rounds are read beside the cycles: each sees what the cycle had given back when
-/// it began, and the cycle sees what it has published a fixed time of the machine later, or as soon as a
-/// process orders something. So no result depends on how long a round takes or on who does it. Not real-time
-/// safe.
+/// it began, and the cycle sees what it has published at a time of the machine that is fixed when it begins,
+/// the later the more lies ahead, or as soon as a process orders something. So no result depends on how long
+/// a round takes or on who does it. Not real-time safe.
 class ReadingBeside {
  public:
   /// `reading` is held while processes read ahead. All of them outlive it.
@@ -72,13 +72,15 @@ class ReadingBeside {
   void wait() { worker_->wait(); }
 
  private:
+  void begin_round(std::int64_t cycle);
   void end_round();
   bool ordered() const;
   channel::Reading needed() const;
 
   std::span<const std::unique_ptr<channel::Process>> processes_;
   std::mutex& reading_;
-  std::int64_t round_cycles_;
+  double period_s_;
+  double round_s_ = 0.0;  ///< of the machine, for the round under way
   std::function<void()> round_;
   bool under_way_ = false;
   std::int64_t ends_ = 0;  ///< before this cycle

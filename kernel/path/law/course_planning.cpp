@@ -2,6 +2,7 @@
 #include "kernel/path/law/course_planning.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace servogate::path {
 namespace {
@@ -19,8 +20,8 @@ Pipeline::Settings settings(const Config& config) {
 
 }  // namespace
 
-CoursePlanning::CoursePlanning(const Config& config, bool forecast, CourseSink& sink)
-    : config_(config), forecast_(forecast), sink_(sink), pipeline_(settings(config), *this) {
+CoursePlanning::CoursePlanning(const Config& config, CourseSink& sink)
+    : config_(config), sink_(sink), pipeline_(settings(config), *this) {
   limits_.axes = config.axis_count;
   limits_.limits = config.limits;
   limits_.transformation = config.transformation;
@@ -51,8 +52,6 @@ void CoursePlanning::look_for_break() {
     const CoursePoint at =
         point_at(view_, extent_.rest, std::max<std::int64_t>(1, stop_.knot), {limits_.axes, {}});
     rest_ = {at.place, at.x};
-  } else if (forecast_ && view_.last() >= 0) {
-    extent_.seconds = view_.knot(view_.last())->t.since({});
   }
   sink_.extend(extent_);
 }
@@ -72,7 +71,7 @@ void CoursePlanning::place(Leg leg) {
   }
   leg.piece.start = length_;
   length_ += leg.piece.length;
-  if (!forecast_) pieces_.push_back(leg.piece);
+  pieces_.push_back(leg.piece);
 }
 
 void CoursePlanning::put(const Leg& leg) {
@@ -85,7 +84,7 @@ void CoursePlanning::cruise(const Leg& leg, double speed) {
   if (broken_) return;
   const double behind = length_;
   place(leg);
-  straight_ = length_ - behind;
+  cruised_ = length_ - behind;
   pipeline_.cruise(leg, speed);
   look_for_break();
   section_ = length_;
@@ -97,7 +96,7 @@ void CoursePlanning::rest(bool confirm) {
   look_for_break();
   if (broken_) return;
   view_.complete = true;
-  if (!forecast_) find_stops();
+  find_stops();
   const Knot& last = *view_.knot(view_.last());
   extent_.complete = true;
   extent_.confirm = confirm;
@@ -129,14 +128,42 @@ void CoursePlanning::put(const Knot& knot) {
 void CoursePlanning::cruise(const Cruise& cruise) {
   look_for_break();
   if (broken_) return;
+  const Knot before = *view_.knot(view_.last());
+  if (cruise.piece.shape == Piece::Shape::arc) return arc(cruise, before);
   Knot straight;
-  const Knot& before = *view_.knot(view_.last());
   straight.kind = Knot::Kind::straight;
   straight.t = base_ = before.t.plus(cruise.seconds);
-  straight.place = before.place + straight_;
-  straight.control = cruise.to;
+  straight.place = before.place + cruised_;
+  straight.control = position(cruise.piece, cruise.piece.length, config_.axis_count);
   straight.turns = before.turns;
   append(straight);
+  joins_ = true;
+}
+
+/// An arc at constant speed needs no law, and knots only as dense as its spline is the arc.
+void CoursePlanning::arc(const Cruise& cruise, const Knot& before) {
+  constexpr double kTurn = 0.05, kSeconds = 0.032;  // between two knots, at most
+  const Piece& piece = cruise.piece;
+  const double turn = std::abs(piece.omega) * piece.length;
+  const double count = std::ceil(std::max(turn / kTurn, cruise.seconds / kSeconds));
+  const double seconds = cruise.seconds / count, spacing = piece.length / count;
+  const auto control = [&](double k) {
+    return spline_control(piece, k * spacing, spacing, config_.axis_count);
+  };
+  base_ = before.t;
+  section_ = before.place;
+  begin(control(-1.0), control(0.0));
+  joins_ = true;
+  for (double k = 0.0; k <= count; ++k) {
+    Knot knot;
+    knot.t = LawTime{}.plus(k * seconds);
+    knot.w = 1.0 / seconds;
+    knot.place = k * spacing;
+    knot.turns = before.turns;
+    knot.control = control(k + 1.0);
+    put(knot);
+  }
+  base_ = view_.knot(view_.last())->t;
   joins_ = true;
 }
 
@@ -146,9 +173,7 @@ void CoursePlanning::move(const Move& /*move*/) {}
 void CoursePlanning::append(const Knot& knot) {
   if (broken_) return;
   view_.knots.push_back(knot);
-  if (!forecast_) return find_stops();
-  view_.knots.forget_before(view_.knots.end() - 1);
-  sure_ = knot.place;
+  find_stops();
 }
 
 void CoursePlanning::find_stops() {
@@ -179,17 +204,15 @@ void CoursePlanning::find_stops() {
 }
 
 void CoursePlanning::give() {
-  if (!forecast_) {
-    for (; given_ < view_.knots.end(); ++given_) sink_.put(view_.knots[given_]);
-    extent_.knots = given_;
-    const double place = view_.knot(view_.last())->place;
-    for (; !pieces_.empty() && (extent_.complete || pieces_.front().start <= place); ++extent_.pieces) {
-      sink_.put(pieces_.front());
-      pieces_.pop_front();
-    }
-    const std::int64_t needed = std::min(looked_, std::max<std::int64_t>(0, stop_.knot)) - 4;
-    view_.knots.forget_before(static_cast<std::size_t>(std::max<std::int64_t>(0, needed)));
+  for (; given_ < view_.knots.end(); ++given_) sink_.put(view_.knots[given_]);
+  extent_.knots = given_;
+  const double place = view_.knot(view_.last())->place;
+  for (; !pieces_.empty() && (extent_.complete || pieces_.front().start <= place); ++extent_.pieces) {
+    sink_.put(pieces_.front());
+    pieces_.pop_front();
   }
+  const std::int64_t needed = std::min(looked_, std::max<std::int64_t>(0, stop_.knot)) - 4;
+  view_.knots.forget_before(static_cast<std::size_t>(std::max<std::int64_t>(0, needed)));
   sink_.extend(extent_);
 }
 

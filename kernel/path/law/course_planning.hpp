@@ -4,38 +4,27 @@
 #include <optional>
 
 #include "kernel/path/law/course.hpp"
+#include "kernel/path/law/course_law.hpp"
 #include "kernel/path/law/pipeline.hpp"
 #include "kernel/path/law/rate.hpp"
-#include "kernel/path/shape/gather.hpp"
 
 namespace servogate::path {
 
 /// The law over one clock outside the cycle: takes runs of elements, and gives knots with the stops that are
 /// known on them. A stop is looked for behind each knot of `kStopEvery`, as soon as the knots are there that
 /// it may need, counted in knots: what is given depends on the elements alone. Not real-time safe.
-class CoursePlanning final : public RunSink, private KnotSink {
+class CoursePlanning final : public CourseLaw, private KnotSink {
  public:
-  /// `forecast`: the time is wanted, and nothing will be driven.
-  CoursePlanning(const Config& config, bool forecast, CourseSink& sink);
+  CoursePlanning(const Config& config, CourseSink& sink);
 
   void put(const Leg& leg) override;
   void cruise(const Leg& leg, double speed) override;
   void rest(bool confirm) override;
-  /// Plans what can be planned.
-  void work();
-  /// There is no law inside of the limits for what comes next: what was given rests before it, and nothing
-  /// more is given, until restart().
-  bool broken() const { return broken_; }
-  /// Where a broken course rests.
-  struct Rest {
-    double place = 0.0;       ///< path parameter from the start of the course
-    std::optional<Vector> x;  ///< path coordinates; not at its start and in a forecast: the programmed place
-  };
-  const Rest& rest_place() const { return rest_; }
-  /// Path parameter that a course which breaks now surely comes to.
-  double sure() const { return sure_; }
-  /// Forgets what was not given yet.
-  void restart();
+  void work() override;
+  bool broken() const override { return broken_; }
+  Rest rest_place() const override { return rest_; }
+  double sure() const override { return sure_; }
+  void restart() override;
   const Pipeline::Counts& counts() const { return pipeline_.counts(); }
 
   static constexpr std::int64_t kStopEvery = 8;  // knots
@@ -59,6 +48,7 @@ class CoursePlanning final : public RunSink, private KnotSink {
   void put(const Knot& knot) override;
   void rest() override {}
   void cruise(const Cruise& cruise) override;
+  void arc(const Cruise& cruise, const Knot& before);
   void move(const Move& move) override;
   void place(Leg leg);
   void append(const Knot& knot);
@@ -67,7 +57,6 @@ class CoursePlanning final : public RunSink, private KnotSink {
   void give();
 
   Config config_;
-  bool forecast_;
   CourseSink& sink_;
   RateLimits limits_;
   Pipeline pipeline_;
@@ -77,10 +66,10 @@ class CoursePlanning final : public RunSink, private KnotSink {
   bool broken_ = false;  ///< and it cannot be driven to its end
   Rest rest_;
   double sure_ = 0.0;
-  bool joins_ = false;        ///< the next run begins behind a straight
+  bool joins_ = false;        ///< the next run begins behind a cruise
   double length_ = 0.0;       ///< of the legs so far
   double section_ = 0.0;      ///< where the run in work begins
-  double straight_ = 0.0;     ///< length of the straight behind it
+  double cruised_ = 0.0;      ///< length of the cruise behind it
   LawTime base_;              ///< the same as time
   std::deque<Piece> pieces_;  ///< that no knot given lies on yet
   std::size_t given_ = 0;     ///< knots

@@ -69,9 +69,12 @@ void EvenTime::take(const Run& run, const Kept<double>& places, const Kept<Vecto
   const double f = std::clamp(tau.at(std::clamp((t - begins_) / seconds, 0.0, 1.0)), 0.0, 1.0);
   const auto w = spline_weights(f);
   Vector x{};
-  for (int a = 0; a < axes_; ++a)
-    x[a] = w[0] * controls[at_][a] + w[1] * controls[at_ + 1][a] + w[2] * controls[at_ + 2][a] +
-           w[3] * controls[at_ + 3][a];
+  for (int a = 0; a < axes_; ++a) {
+    // By differences, so that an axis that rests does so to the last digit, and is left out of the problems.
+    const double c = controls[at_][a];
+    x[a] = c + w[1] * (controls[at_ + 1][a] - c) + w[2] * (controls[at_ + 2][a] - c) +
+           w[3] * (controls[at_ + 3][a] - c);
+  }
   const double way = places[at_ + 1] - places[at_], guess = places[at_] + f * way;
   leg_ = run.leg_at(guess, leg_);
   double place = next_ == 0 ? 0.0 : run.downhill(x, guess, std::max(kLeastWay, 0.5 * way), leg_);

@@ -174,12 +174,11 @@ bool Motion::advance(double& left, const Ahead& ahead) noexcept {
 double Timing::through(const Span& span, const Span* behind) {
   const Goal wanted = goal(span, behind, at_, {}, 1.0);
   const Box& box = span.terms.box;
-  Profile profile;
-  profile.start(at_);
+  profile_.start(at_);
   double seconds = span.length / std::max(box.velocity, 1e-9);
-  if (plan(profile, at_, wanted, box) || plan_to_leave(profile, at_, box, wanted)) {
-    seconds = profile.duration();
-    at_ = {0.0, profile.end().v, profile.end().a};
+  if (plan(profile_, at_, wanted, box) || plan_to_leave(profile_, at_, box, wanted)) {
+    seconds = profile_.duration();
+    at_ = {0.0, profile_.end().v, profile_.end().a};
   }
   if (span.stop) at_ = {};
   return seconds;

@@ -71,9 +71,12 @@ class Timing {
   /// Seconds from the start of `span`, reached as the one before was left, to its end. `behind`: the next
   /// one; nullptr where the path rests.
   double through(const Span& span, const Span* behind);
+  /// How it goes along the last span, from its start; no longer than nothing where there was no way.
+  const Profile& profile() const { return profile_; }
 
  private:
   MotionState at_;
+  Profile profile_;
 };
 
 }  // namespace servogate::path

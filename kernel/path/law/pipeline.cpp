@@ -73,9 +73,7 @@ void Pipeline::end() {
 
 void Pipeline::cruise(const Leg& leg, double speed) {
   end_run(speed);
-  const int axes = settings_.axes;
-  sink_.cruise({position(leg.piece, 0.0, axes), position(leg.piece, leg.piece.length, axes),
-                leg.piece.length / speed});
+  sink_.cruise({leg.piece, leg.piece.length / speed});
   run_.clear(speed);
 }
 

@@ -12,9 +12,9 @@
 
 namespace servogate::path {
 
-/// A straight way at constant speed between two runs.
+/// A way along a line or an arc at constant speed between two runs.
 struct Cruise {
-  Vector from{}, to{};
+  Piece piece;
   double seconds = 0.0;
 };
 
@@ -73,8 +73,8 @@ class Pipeline {
   void add(const Leg& leg);
   /// The run rests behind the last element; the next one begins another run.
   void end();
-  /// The run goes on along `leg`, a line, at a constant speed of its parameter; the next element begins
-  /// another run, at that speed.
+  /// The run goes on along `leg`, a line or an arc, at a constant speed of its parameter; the next element
+  /// begins another run, at that speed.
   void cruise(const Leg& leg, double speed);
   /// Forgets the run in work.
   void abandon();

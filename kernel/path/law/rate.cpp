@@ -10,16 +10,30 @@ namespace servogate::path {
 namespace {
 
 constexpr double kPlace = 0.001;  // s between places; in changes of half a second twice as far, of one thrice
-constexpr double kShare = 0.9997;  // of the limits: what may lie between two places
-constexpr double kAbove = 0.996;   // the same above full rate
+constexpr double kShare = 0.9997;       // of the limits: what may lie between two places
+constexpr double kInside = 1.0 - 1e-9;  // of an interval: the place is surely in it
+constexpr double kAbove = 0.996;        // the same above full rate
+
+/// s between the places that are looked at.
+double spacing(const RateChange& change) noexcept {
+  if (std::max(change.r0, change.r1) > 1.0) return kPlace;
+  return (change.seconds > 1.0 ? 3.0 : change.seconds > 0.5 ? 2.0 : 1.0) * kPlace;
+}
+
+/// Nearer than `apart` to this place the rate is at its least, which is on the other side of 0.
+bool dips(const RateState& s, double sense, double apart) noexcept {
+  constexpr double kLow = 0.05;
+  if (std::abs(s.rate) > kLow) return false;
+  const double sign = sense > 0.0 ? 1.0 : -1.0, slope = sign * s.slope, bend = sign * s.bend;
+  return bend > 0.0 && std::abs(slope) <= bend * apart && sign * s.rate < slope * slope / (2.0 * bend);
+}
 
 /// The step that goes late, its derivatives and its integral, by the share of time.
 struct Late {
   double value, d1, d2, integral;
 
   Late(int p, double z) noexcept {
-    double before = 1.0;  // z^(p - 1)
-    for (int i = 1; i < p; ++i) before *= z;
+    const double before = p == 3 ? z * z : z;  // z^(p - 1)
     const double zp = before * z, next = p + 1.0, last = p + 2.0;
     value = zp * z * (last - next * z);
     d1 = next * last * zp * (1.0 - z);
@@ -32,6 +46,7 @@ struct Late {
 
 // Slowing down (in size) late; speeding up is its mirror. What is left of the slope goes with z (1 - z)^3.
 RateState RateChange::at(double t) const noexcept {
+  const double per_second = 1.0 / seconds;
   const double in = std::min(t, seconds), z = in / seconds, y = 1.0 - z, h = r1 - r0;
   if (way != 0.0) {
     const double v = way / seconds, a = v / seconds, j = a / seconds;
@@ -43,6 +58,9 @@ RateState RateChange::at(double t) const noexcept {
   const double whole = 1.0 - (power + 1.0) / (power + 3.0);
   const double step = up ? 1.0 - late.value : late.value, bent = up ? -late.d2 : late.d2;
   const double passed = up ? z - (whole - late.integral) : late.integral;
+  if (slope0 == 0.0)
+    return {r0 + h * step, h * late.d1 * per_second, h * bent * per_second * per_second,
+            r0 * in + h * seconds * passed + r1 * (t - in)};
   const double left = z * z * (0.5 - z * (1.0 - z * (0.75 - 0.2 * z)));
   return {r0 + h * step + slope0 * seconds * z * y * y * y,
           h * late.d1 / seconds + slope0 * y * y * (1.0 - 4.0 * z),
@@ -201,9 +219,7 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
   CoursePlace place(view);
   place.set_knot(before_);
   if (!interval_.take(view, before_, limits)) return Fit::unpublished;
-  const double most = std::max({1.0, change_.r0, change_.r1});
-  const double wider = most > 1.0 ? 1.0 : change_.seconds > 1.0 ? 3.0 : change_.seconds > 0.5 ? 2.0 : 1.0;
-  const double next = wider * kPlace;
+  const double most = std::max({1.0, change_.r0, change_.r1}), next = spacing(change_);
   RateLimits kept = limits;
   if (most > 1.0) {  // more may lie between two places
     for (AxisLimits& axis : kept.limits) {
@@ -217,8 +233,10 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
     if (!(std::abs(s.rate) <= most + 1e-12)) return Fit::breaks;
     // A change that does not go through rest does not turn round on the way.
     if (change_.r0 * change_.r1 >= 0.0 && s.rate * (change_.r0 + change_.r1) < -1e-12) return Fit::breaks;
+    if (change_.r0 * change_.r1 > 0.0 && dips(s, change_.r0, next)) return Fit::breaks;
     const LawTime at = from_.plus(s.passed);
-    if (!place.go(at)) return Fit::unpublished;
+    const double in = at.since(interval_.begin());
+    if (!(in > 0.0 && in < kInside * interval_.seconds()) && !place.go(at)) return Fit::unpublished;
     --places;
     // Both sides of the knots on the way; a place at the very start may lie in the next interval.
     if (place.knot() != interval_.knot() && !keeps_at_knots(view, place.knot(), kept, places))
@@ -249,33 +267,67 @@ CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near
   return interval.at(t.since(interval.begin()), 0.0, 0.0, limits.axes);
 }
 
+namespace {
+
+/// Every eighth place that Verification looks at: false where one of them breaks a limit, which most changes
+/// that are too short do.
+bool keeps_here_and_there(const CourseView& view, const RateChange& change, const LawTime& from,
+                          std::int64_t near, const RateLimits& limits) {
+  constexpr int kApart = 8;
+  const double next = spacing(change);
+  CoursePlace place(view);
+  place.set_knot(near);
+  Interval interval;
+  for (double t = 0.0; t < change.seconds;) {
+    for (int n = 0; n < kApart; ++n) t = std::min(t + next, change.seconds);
+    const RateState s = change.at(t);
+    const LawTime at = from.plus(s.passed);
+    const double in = at.since(interval.begin());
+    const bool same = interval.knot() != 0 && in > 0.0 && in < kInside * interval.seconds();
+    if (!same && !place.go(at)) return true;  // not for this to say
+    if (interval.knot() != place.knot() && !interval.take(view, place.knot(), limits)) return true;
+    if (!interval.keeps(at.since(interval.begin()), s, limits)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& before,
                    const RateLimits& limits) {
   constexpr int kShorter = 4, kTries = 24, kPlaces = 1 << 20;
   constexpr double kStep = 0.85;
   const Knot* at = view.knot(knot);
   if (at == nullptr) return {};
-  const auto fits = [&](double seconds, int power) {
+  const std::int64_t near = std::max<std::int64_t>(1, knot);
+  const auto may_fit = [&](double seconds, int power) {
+    return keeps_here_and_there(view, {1.0, 0.0, 0.0, seconds, power}, at->t, near, limits);
+  };
+  const auto fits = [&](const StopHint& stop) {
     int places = kPlaces;
     Verification v;
-    v.begin({1.0, 0.0, 0.0, seconds, power}, at->t, std::max<std::int64_t>(1, knot));
+    v.begin({1.0, 0.0, 0.0, stop.seconds, stop.power}, at->t, near);
     return v.go(view, limits, places) == Fit::fits;
   };
+  // Shorter and shorter ones, looked at here and there; then the shortest that surely fits.
+  std::array<StopHint, kShorter + 1> shorter;
+  std::size_t count = 0;
   double seconds = before.seconds;
   int power = before.power;
-  if (fits(seconds, power)) {
-    for (int n = 0; n < kShorter && seconds * kStep > RateChange::kShortest; ++n) {
-      if (!fits(seconds * kStep, power)) {
-        if (!fits(seconds * kStep, 5 - power)) break;
-        power = 5 - power;
-      }
-      seconds *= kStep;
+  while (count < shorter.size() && (count == 0 || seconds > RateChange::kShortest)) {
+    if (!may_fit(seconds, power)) {
+      if (count == 0 || !may_fit(seconds, 5 - power)) break;
+      power = 5 - power;
     }
-    return {seconds, power, knot};
+    shorter[count++] = {seconds, power, knot};
+    seconds *= kStep;
   }
+  for (std::size_t n = count; n-- > 0;)
+    if (fits(shorter[n])) return shorter[n];
+  seconds = before.seconds;
   for (int n = 0; n < kTries && seconds < RateChange::kLongest; ++n, seconds *= RateChange::kLonger)
-    for (const int p : {power, 5 - power})
-      if (fits(seconds, p)) return {seconds, p, knot};
+    for (const int p : {before.power, 5 - before.power})
+      if (may_fit(seconds, p) && fits({seconds, p, knot})) return {seconds, p, knot};
   return {before.seconds, before.power, -1};
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "kernel/path/law/rate.hpp"
@@ -16,7 +17,7 @@ bool line_near(const CourseView& view, const RateLimits& limits, std::int64_t m)
   constexpr int kApart = 12;
   constexpr double kAside = 2.5e-3;  // square of a direction
   Vector before{};
-  for (int n = 0; n <= 3 * kApart; ++n, m = next_of(view, m)) {
+  for (int n = 0; n <= 4 * kApart; ++n, m = next_of(view, m)) {
     if (n % kApart != 0) continue;
     Interval interval;
     if (!interval.take(view, m, limits)) return false;
@@ -78,9 +79,11 @@ bool RateMotion::follow_ramp(const CourseView& view, double target, double perio
 
 /// The early way, where the path is straight. By a little less than the limits also where it is hardly bent.
 bool RateMotion::ramp(const CourseView& view, double target, double period) noexcept {
-  constexpr double kShares[] = {0.9995, 0.99, 0.95, 0.8}, kLittle = 0.1;
+  constexpr double kShares[] = {0.9995, 0.99, 0.95, 0.8, 0.6, 0.4}, kLittle = 0.1;
   int places = std::exchange(left_, 0);
-  const StraightRamp now = ramp_;
+  // A ramp that is on its way, or about to begin, goes on where the try is in vain.
+  std::optional<StraightRamp> now;
+  if (on_ramp_ || ramp_at_ >= 0) now = ramp_;
   const RateChange then = change_;
   bool fits = false;
   for (const double share : kShares) {
@@ -97,7 +100,7 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
   }
   left_ += places;
   if (!fits || !ramp_.rewind(view, limits_)) {
-    ramp_ = now;
+    if (now) ramp_ = *now;
     change_ = then;
     return false;
   }

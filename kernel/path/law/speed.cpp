@@ -11,8 +11,8 @@ namespace servogate::path {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// Barrier: first weight as a share of time by rows, factor, last weight, decrement to stop at.
-constexpr double kFirst = 0.3, kFactor = 0.2, kDecrement = 0.1;
+// Barrier: factor from weight to weight, decrement to stop at.
+constexpr double kFactor = 0.2, kDecrement = 0.1;
 constexpr int kSteps = 30;
 
 }  // namespace
@@ -240,7 +240,7 @@ bool SpeedLaw::solve(SpeedProblem& p) {
   if (!(worst(p.beta) < 1.0)) return false;
   beta_ = p.beta;
   const double rows = row_count();
-  descend(kFirst * time(beta_) / rows, p.gap);
+  descend(p.first * time(beta_) / rows, p.gap);
   p.beta = beta_;
   return true;
 }

@@ -19,14 +19,15 @@ struct KnotBound {
 /// s an interval; the law is b = (d parameter / dt)^2, a uniform quadratic B-spline `beta` on the same knots:
 /// interval k is made of beta k to k + 2, so that velocity and acceleration are continuous.
 struct SpeedProblem {
-  int axes = 0;                         ///< 1 - kMaxAxes
-  std::array<int, kMaxAxes> axis{};     ///< of the machine, for each axis of the controls
-  double step = 0.0;                    ///< > 0
-  std::span<const double> controls;     ///< `axes` values each, three more than intervals
-  std::span<const KnotBound> bounds;    ///< one a knot
-  double share = 1.0;                   ///< of the limits that is planned for, 0 - 1
-  std::vector<double> beta;  ///< start, inside of all limits, then solution; two more than intervals
+  int axes = 0;                       ///< 1 - kMaxAxes
+  std::array<int, kMaxAxes> axis{};   ///< of the machine, for each axis of the controls
+  double step = 0.0;                  ///< > 0
+  std::span<const double> controls;   ///< `axes` values each, three more than intervals
+  std::span<const KnotBound> bounds;  ///< one a knot
+  double share = 1.0;                 ///< of the limits that is planned for, 0 - 1
+  std::vector<double> beta;           ///< start, inside of all limits, then solution; two more than intervals
   int fixed_head = 0, fixed_tail = 0;  ///< beta that are given
+  double first = 0.3;                  ///< the same of the first weight of the barrier: less near the optimum
   double gap = 0.01;                   ///< how near to the optimum, about, as a share of the time
 };
 

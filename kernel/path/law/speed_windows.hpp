@@ -50,7 +50,8 @@ class SpeedWindows {
   const std::array<AxisLimits, kMaxAxes>* merged(const Run& run, std::size_t first, std::size_t end);
   void pack(const Kept<Vector>& controls, std::size_t to);
   void guess(std::size_t count, std::size_t intervals);
-  void fly(bool end);
+  void fly(bool end, double slow);
+  bool near_clock();
   void solve(bool last, std::size_t commit);
   void mend(std::size_t commit);
   void tighten(double share);
@@ -64,9 +65,10 @@ class SpeedWindows {
   int made_ = 0, reckoned_ = -1;  // windows; the one that over_ belongs to
   std::size_t over_ = 0;          // knots of overlap
   std::size_t leg_ = 0;
+  bool flies_in_ = false, flies_out_ = false;  // this window begins or ends at the clock's speed
   std::vector<double> rest_;  // beta from from_ on: committed head, and what the window before had behind it
   std::vector<Vector> on_axes_;
-  std::vector<double> controls_, levels_, slopes_, calm_;
+  std::vector<double> controls_, levels_, slopes_, calm_, trial_;
   std::vector<Excess> excess_;
   std::vector<KnotBound> bounds_;
   std::deque<std::array<AxisLimits, kMaxAxes>> merged_;

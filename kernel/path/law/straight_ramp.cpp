@@ -10,7 +10,8 @@ namespace servogate::path {
 namespace {
 
 constexpr double kPlace = 0.001;  // s between places; in ramps of half a second twice as far, of one thrice
-constexpr double kBent = 0.3;     // of a direction, or of an axis' acceleration: no straight
+constexpr double kBent = 0.8;     // of a direction: no straight, nor nearly one
+constexpr double kAside = 0.6;    // of an axis' acceleration: nor one
 constexpr int kSolve = 1;         // looks that take as long as to find the place
 constexpr double kSameRate = 1e-10;
 constexpr double kSlow = 1e-3;         // mm/s of the law: it rests, or nearly
@@ -146,7 +147,7 @@ bool StraightRamp::begins_straight(const RateLimits& limits, const CoursePoint& 
   origin_ = along.s = dot(direction_, law.x, limits.axes);
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
     const double aside = (law.a[i] - along.a * direction_[i]) * rate * rate;
-    if (!(std::abs(aside) <= kBent * limits.limits[i].acceleration)) return false;
+    if (!(std::abs(aside) <= kAside * limits.limits[i].acceleration)) return false;
   }
   return true;
 }
@@ -256,7 +257,8 @@ Fit StraightRamp::verify(const CourseView& view, const RateLimits& limits, int& 
     if (places <= 0) return Fit::open;
     if (!keeps_to(view, limits, t, places)) return Fit::breaks;
     const double rate = std::abs(state_.rate);
-    if (t == 0.0) most = std::max(most, rate);
+    // Out of speeding up above full rate it goes on up for a while.
+    if (t == 0.0 && rate > 1.0) most = rate * fastest_ / profile_.at(0.0).v;
     if (!(rate <= most + kAbove)) return Fit::breaks;
     if (t >= whole) return Fit::fits;
   }

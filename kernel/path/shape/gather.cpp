@@ -108,33 +108,60 @@ void Gather::put(const Element& e, const Piece& piece) {
   last_ = piece;
 }
 
-/// The middle of a long line is driven at its feed: a run before it and one behind it are left to plan.
-bool Gather::put_with_cruise(const Leg& leg) {
+/// Constant speed of the parameter that is surely kept along a leg, and how long its ends are at least that
+/// come to it from rest. 0: there is none.
+double Gather::cruise_speed(const Leg& leg, double& end) const {
   // Shares of feed and limits that are surely reached; how much longer than the way to speed up the ends are.
-  constexpr double kFeed = 0.999, kVelocity = 0.98, kShare = 0.95, kLonger = 1.3, kMoreSeconds = 0.08;
+  constexpr double kFeed = 0.999, kVelocity = 0.98, kShare = 0.95, kLonger = 1.15, kMoreSeconds = 0.03;
   constexpr double kBeside = 0.01;  // of the limits, beside the reserve
-  constexpr double kCorner = 1.0, kCornerByTolerance = 40.0, kLeastGain = 0.15;
-  constexpr double kHardly = 1.001;  // faster than the middle, beside it: the first clock steps no higher
-  if (leg.piece.shape != Piece::Shape::line) return false;
-  if (leg.surface.speed > 0.0 && leg.piece.c1[leg.surface.axis] != 0.0) return false;  // no constant speed
+  constexpr double kCorner = 0.25, kCornerByTolerance = 10.0;
+  constexpr double kTurning = 0.25, kTurningJerk = 0.1;  // of the limits: what needs more is planned
   const double left = 1.0 - config_.reserve;
   const double velocity = std::min(kVelocity, left - kBeside), share = std::min(kShare, left - 4.0 * kBeside);
-  const Vector along = turned_to_axes(*config_.transformation, leg.piece.c1, config_.axis_count);
-  double v = kFeed * leg.feed, a = std::numeric_limits<double>::infinity(), j = a;
+  const Piece& p = leg.piece;
+  const bool arc = p.shape == Piece::Shape::arc;
+  const auto turned = [&](std::size_t coordinate) {
+    Vector unit{};
+    unit[coordinate] = 1.0;
+    return turned_to_axes(*config_.transformation, unit, config_.axis_count);
+  };
+  const Vector straight = turned_to_axes(*config_.transformation, p.c1, config_.axis_count);
+  const Vector plane1 = arc ? turned(p.axis1) : Vector{}, plane2 = arc ? turned(p.axis2) : Vector{};
+  const double most = std::max(p.radius, p.radius + p.radius_slope * p.length), omega = std::abs(p.omega);
+  double v = kFeed * leg.feed, a = kNone, j = kNone;
   for (std::size_t i = 0; i < static_cast<std::size_t>(config_.axis_count); ++i) {
-    const double rate = std::abs(along[i]);
+    const AxisLimits& limits = (*leg.limits)[i];
+    const double round = arc ? most * omega * std::hypot(plane1[i], plane2[i]) : 0.0;
+    const double rate = std::abs(straight[i]) + round;
     if (rate == 0.0) continue;
-    v = std::min(v, velocity * (*leg.limits)[i].velocity / rate);
-    a = std::min(a, share * (*leg.limits)[i].acceleration / rate);
-    j = std::min(j, share * (*leg.limits)[i].jerk / rate);
+    v = std::min(v, velocity * limits.velocity / rate);
+    a = std::min(a, (share - (arc ? kTurning : 0.0)) * limits.acceleration / rate);
+    j = std::min(j, (share - (arc ? kTurningJerk : 0.0)) * limits.jerk / rate);
+    if (v * v * omega * round > kTurning * limits.acceleration ||
+        v * v * v * omega * omega * round > kTurningJerk * limits.jerk)
+      return 0.0;
   }
+  // Where an axis is too slow for the feed, it is so in some directions of an arc alone.
+  if (arc && v < kFeed * leg.feed) return 0.0;
   const double seconds = v >= a * a / j ? v / a + a / j : 2.0 * std::sqrt(v / j);
   // The estimate of a clock speeds up in its own way.
   const double clock = std::sqrt(2.0) / 3.0 * v * std::sqrt(v / j) + v * v / (1.4 * a);
-  const double end = kLonger * std::max(0.5 * v * seconds, clock) + kMoreSeconds * v + kCorner +
-                     kCornerByTolerance * leg.tolerance;
-  const double middle = leg.piece.length - 2.0 * end;
-  if (!(middle > kLeastGain * v)) return false;
+  end = kLonger * std::max(0.5 * v * seconds, clock) + kMoreSeconds * v + kCorner +
+        kCornerByTolerance * leg.tolerance;
+  return v;
+}
+
+/// The middle of a long line or arc is driven at its feed: a run before it and one behind it are left to
+/// plan.
+bool Gather::put_with_cruise(const Leg& leg) {
+  constexpr double kLeastGain = 0.08;  // s
+  constexpr double kHardly = 1.001;    // faster than the middle, beside it: the first clock steps no higher
+  const bool arc = leg.piece.shape == Piece::Shape::arc;
+  if (leg.surface.speed > 0.0 && (arc || leg.piece.c1[leg.surface.axis] != 0.0))
+    return false;  // no constant speed
+  double end = 0.0;
+  const double v = cruise_speed(leg, end), middle = leg.piece.length - 2.0 * end;
+  if (!(middle > kLeastGain * v) || v == 0.0) return false;
   Leg some = leg;
   some.feed = std::min(leg.feed, kHardly * v);
   some.piece = part(leg.piece, 0.0, end);

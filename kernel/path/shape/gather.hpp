@@ -8,8 +8,8 @@ namespace servogate::path {
 class RunSink {
  public:
   virtual void put(const Leg& leg) = 0;
-  /// The run goes on along a straight line at a constant speed of its parameter: `leg`; behind it another run
-  /// begins, at that speed.
+  /// The run goes on along a line or an arc at a constant speed of its parameter: `leg`; behind it another
+  /// run begins, at that speed.
   virtual void cruise(const Leg& leg, double speed) = 0;
   /// The run ends behind what was put.
   virtual void rest(bool confirm) = 0;
@@ -50,6 +50,7 @@ class Gather {
   void put(const Element& element, const Piece& piece);
   void rest(bool confirm);
   bool put_with_cruise(const Leg& leg);
+  double cruise_speed(const Leg& leg, double& end) const;
   double bulge() const;
 
   Config config_;

@@ -136,6 +136,18 @@ PathPoint evaluate(const Piece& p, double s, int axes) noexcept {
   return at;
 }
 
+Vector spline_control(const Piece& p, double s, double spacing, int axes) {
+  Vector x{};
+  for (int i = 0; i < axes; ++i) x[i] = straight(p, i, s);
+  if (p.shape != Piece::Shape::arc) return x;
+  // (c before + 4 c + c behind) / 6 lies on the circle.
+  const double out = 3.0 / (2.0 + std::cos(p.omega * spacing));
+  const double angle = p.angle + p.omega * s, r = out * (p.radius + p.radius_slope * s);
+  x[p.axis1] = p.center1 + r * std::cos(angle);
+  x[p.axis2] = p.center2 + r * std::sin(angle);
+  return x;
+}
+
 Piece part(const Piece& piece, double from, double length) {
   Piece p = piece;
   p.offset = piece.offset + from;

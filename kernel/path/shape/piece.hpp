@@ -45,6 +45,10 @@ Vector position(const Piece& piece, double s, int axes) noexcept;
 /// Position and three derivatives. real-time safe.
 PathPoint evaluate(const Piece& piece, double s, int axes) noexcept;
 
+/// Control at the place `s` of the uniform cubic spline along a line or an arc whose knots lie `spacing` of
+/// the parameter apart: the spline is exact at the knots. Goes on beyond the ends of the piece.
+Vector spline_control(const Piece& piece, double s, double spacing, int axes);
+
 /// Part [from, from + length] of a piece.
 Piece part(const Piece& piece, double from, double length);
 

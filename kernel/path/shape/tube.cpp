@@ -16,7 +16,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kDifference[4] = {-1.0, 3.0, -3.0, 1.0};
 
 // Barrier: first weight as a share of objective by sites, factor, last weight, decrement to stop at.
-constexpr double kFirst = 0.05, kFirstOutside = 0.3, kFactor = 0.12, kGap = 0.1;
+constexpr double kFirst = 0.05, kFirstOutside = 0.3, kFactor = 0.12, kGap = 0.3;
 constexpr double kDecrement = 0.03, kDecrementOutside = 0.003;
 constexpr int kRounds = 40, kSteps = 12, kStepsOutside = 4, kPatience = 14;
 

@@ -66,7 +66,7 @@ bool TubeWindows::window(const Run& run, const Kept<double>& places, bool comple
   for (std::size_t i = commit; i < c.size(); ++i) {
     const double f = std::min(1.0, static_cast<double>(i - commit + 1) / (kOverlap - 2)),
                  s = f * f * (3.0 - 2.0 * f);
-    for (int a = 0; a < settings_.axes; ++a) blend_[i][a] = (1.0 - s) * c[i][a] + s * blend_[i][a];
+    for (int a = 0; a < settings_.axes; ++a) blend_[i][a] = c[i][a] + s * (blend_[i][a] - c[i][a]);
   }
   blend_.erase(blend_.begin(), blend_.begin() + static_cast<std::ptrdiff_t>(intervals - kOverlap));
   from_ = to - kOverlap;
@@ -170,16 +170,14 @@ void TubeWindows::guess(const Run& run, const Kept<double>& places, bool complet
   }
 }
 
-/// Controls at the begin or the end of a run: all alike at rest, else in even steps along the line, `n` from
+/// Controls at the begin or the end of a run: all alike at rest, else in even steps along the leg, `n` from
 /// the one at the very end.
 Vector TubeWindows::at_end(const Run& run, bool begin, double n) const {
   const Leg& leg = run.leg(begin ? run.first() : run.end() - 1);
   const double s = begin ? 0.0 : leg.piece.length, speed = begin ? run.begin_speed() : run.end_speed();
-  Vector x = position(leg.piece, s, settings_.axes);
-  if (speed == 0.0) return x;
-  const Vector d1 = evaluate(leg.piece, s, settings_.axes).d1;
-  for (int a = 0; a < settings_.axes; ++a) x[a] += n * settings_.step * speed * d1[a];
-  return x;
+  if (speed == 0.0) return position(leg.piece, s, settings_.axes);
+  const double spacing = settings_.step * speed;
+  return spline_control(leg.piece, s + n * spacing, spacing, settings_.axes);
 }
 
 void TubeWindows::site(const Run& run, std::size_t leg, double u, std::size_t interval, double share) {

@@ -8,7 +8,6 @@ namespace {
 
 // s, to the last stop that is known; no change of rate takes longer.
 constexpr double kPlannedAhead = 4.8;
-constexpr double kAmple = 1.2;  // and the motion goes on in it while more is planned
 // The knot at the end of the interval in motion is so far behind those that are given back.
 constexpr std::uint64_t kKnotsKept = 8;
 
@@ -83,9 +82,9 @@ bool Publisher::wants_more() const {
   return !from || final_time_ - *from < kPlannedAhead;
 }
 
-bool Publisher::ample(std::optional<double> driven) const {
+double Publisher::ahead(std::optional<double> driven) const {
   const std::optional<double> from = driven ? driven : passed();
-  return from && shown_time_ - *from >= kAmple;
+  return from ? std::max(0.0, shown_time_ - *from) : 0.0;
 }
 
 }  // namespace servogate::path

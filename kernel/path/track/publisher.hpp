@@ -29,9 +29,9 @@ class Publisher final : public SpanSink, public CourseSink {
   bool wants_more() const;
   /// Something waits for room.
   bool waits() const { return !entries_.empty(); }
-  /// So much of what lies ahead of the motion is in the track that nothing more is needed there for a while.
-  /// `driven`: Follower::driven().
-  bool ample(std::optional<double> driven) const;
+  /// How much of what lies ahead of the motion is in the track, s; 0: nothing, or nobody knows. `driven`:
+  /// Follower::driven().
+  double ahead(std::optional<double> driven) const;
   /// Sum of the times of all that is final, s.
   double planned() const { return final_time_; }
 

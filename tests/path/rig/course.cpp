@@ -122,11 +122,9 @@ Polyline sampled(const Course& course, const Vector& start, int axes, double per
         while (time_of(stage.knots[m]) < next) ++m;
         out.push_back(at(stage, m, next, axes));
       } else {
-        Vector x{};
-        const double share = (next - knots_end) / stage.cruise->seconds;
-        for (int i = 0; i < axes; ++i)
-          x[i] = stage.cruise->from[i] + share * (stage.cruise->to[i] - stage.cruise->from[i]);
-        out.push_back(x);
+        const Cruise& cruise = *stage.cruise;
+        out.push_back(
+            position(cruise.piece, (next - knots_end) / cruise.seconds * cruise.piece.length, axes));
       }
     }
     next -= end;
