@@ -21,6 +21,12 @@ int MachineConfig::axis_index(std::string_view letter) const {
   return it == axes.end() ? -1 : static_cast<int>(it - axes.begin());
 }
 
+int MachineConfig::spindle_index(std::string_view wanted) const {
+  for (std::size_t s = 0; s < spindles.size(); ++s)
+    if (wanted == (s == 0 ? "S" : "S" + std::to_string(s + 1))) return static_cast<int>(s);
+  return -1;
+}
+
 const PointConfig* MachineConfig::point(std::string_view wanted, int* station) const {
   for (std::size_t s = 0; s < stations.size(); ++s)
     for (const PointConfig& p : stations[s].points)

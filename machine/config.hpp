@@ -213,6 +213,21 @@ struct SpindleConfig {
   double hertz(double rpm) const { return motor_rpm(rpm) / rated_speed * rated_frequency; }
 };
 
+/// By what an axis follows its master.
+enum class GearSource : std::uint8_t { setpoint, measured };
+
+/// [[gear]]: an axis that follows another one, or a spindle.
+struct ElectronicGearConfig {
+  std::string follower;                        ///< letter of the axis
+  std::string master;                          ///< letter of an axis; S or S2: a spindle
+  std::array<std::int64_t, 2> ratio = {1, 1};  ///< follower : master, in turns, of linear axes in mm; signed
+  GearSource source = GearSource::setpoint;
+  double window = 0.0;    ///< mm or degrees of the follower off its place; beyond: alarm
+  bool in_phase = false;  ///< false: as both stand when its speed is reached
+  double phase = 0.0;     ///< mm or degrees of the follower where the master is at its zero
+  static constexpr double kMostRatio = 10000.0;  ///< either way
+};
+
 /// When a node gets its program: where 1F56h tells another version, or never, then another one is refused.
 enum class ProgramWhen : std::uint8_t { other_version, never };
 
@@ -351,6 +366,7 @@ struct MachineConfig {
   ModbusServerConfig modbus_server;
   std::vector<PendantConfig> pendants;
   std::vector<PathWheelConfig> path_wheels;
+  std::vector<ElectronicGearConfig> electronic_gears;
   SimulationConfig simulation;
 
   std::string file;  ///< path as given to load(), the `file` of every finding
@@ -366,6 +382,8 @@ struct MachineConfig {
   std::int64_t cycle_ns() const;
   /// Index of the axis with this letter, -1: none.
   int axis_index(std::string_view letter) const;
+  /// Index of the spindle that the interface calls S or S2, -1: none.
+  int spindle_index(std::string_view wanted) const;
   /// A point by name (case as written), nullptr: none. `station` gets its station's index where asked for.
   const PointConfig* point(std::string_view name, int* station = nullptr) const;
   /// A Modbus line by name, nullptr: none. `index` gets its place where asked for.

@@ -127,7 +127,8 @@ inline constexpr InterfaceField kAxisFields[] = {
     {"on_limit_plus", 0, 5, Format::bl, Writer::nc, "on the positive hard limit", kGuards},
     {"on_limit_minus", 0, 6, Format::bl, Writer::nc, "on the negative hard limit", kGuards},
     {"brake_release", 0, 7, Format::bl, Writer::nc, "TRUE: the holding brake is to be open", kGuards},
-    {"owner", 1, 0, Format::by, Writer::nc, "0 none, 1 process, 2 manual, 3 homing, 4 PLC, 5 bench"},
+    {"owner", 1, 0, Format::by, Writer::nc,
+     "0 none, 1 process, 2 manual, 3 homing, 4 PLC, 5 bench, 6 electronic gear"},
     {"handwheel_refusal", 2, 0, Format::in, Writer::nc,
      "why the last counts of its handwheel did not move the axis, 0: they did; numbers as ErrorID"},
     {"position", 4, 0, Format::re, Writer::nc, "measured position, machine coordinates, mm or degrees",
@@ -142,6 +143,10 @@ inline constexpr InterfaceField kAxisFields[] = {
     {"jog_plus", 8, 5, Format::bl, Writer::plc, "jogs while TRUE"},
     {"jog_minus", 8, 6, Format::bl, Writer::plc, "jogs while TRUE"},
     {"handwheel", 9, 0, Format::by, Writer::plc, "the axis follows handwheel 1 or 2; 0: none"},
+    {"gear", 10, 0, Format::by, Writer::plc,
+     "the axis follows its master by this one of its [[gear]] tables, from 1; 0: none. After a stop 0 first"},
+    {"gear_state", 11, 0, Format::by, Writer::nc,
+     "its electronic gear: 0 none, 1 engaging, 2 in step, 3 disengaging, 4 refused", kGuards},
 };
 inline constexpr InterfaceField kSpindleFields[] = {
     {"run", 0, 0, Format::bl, Writer::nc, "the program wants the spindle to turn", kGuards},

@@ -21,7 +21,7 @@ inline constexpr int kMaxSegments = 4;
 
 /// Who may command an axis; exactly one at a time, hand-over at standstill only (docs/architecture.md,
 /// "Owners").
-enum class AxisOwner : std::uint8_t { none, process, manual, homing, plc, bench };
+enum class AxisOwner : std::uint8_t { none, process, manual, homing, plc, bench, gear };
 
 /// How the last jog of an axis ended.
 enum class JogEnd : std::uint8_t {
@@ -36,6 +36,25 @@ enum class JogEnd : std::uint8_t {
 };
 inline constexpr int kJogEnds = static_cast<int>(JogEnd::power) + 1;
 
+/// How far an electronic gear has an axis, in the order of the K place `<axis>.gear_state`.
+enum class GearState : std::uint8_t {
+  none,
+  engaging,     ///< it follows, and is not in step yet
+  in_step,      ///< inside its window
+  disengaging,  ///< it comes to rest
+  refused,      ///< the last order to engage was refused: AxisGear::refusal
+};
+inline constexpr int kGearStates = static_cast<int>(GearState::refused) + 1;
+
+/// The electronic gear by which an axis follows a master ([[gear]] of the machine file).
+struct AxisGear {
+  GearState state = GearState::none;
+  std::uint8_t number = 0;    ///< in force or asked for last, of the gears of this axis from 1; 0: none
+  std::uint16_t refusal = 0;  ///< of the last order, as Answer::refusal; 0: it was accepted
+  double refused_value = 0.0, refused_limit = 0.0;  ///< of that, as Answer has them
+  double phase_error = 0.0;  ///< how far its measured place is behind that of its master's, + behind; or 0
+};
+
 /// One axis as everybody sees it. Units: mm or degrees, seconds. A lathe's X is a radius.
 struct AxisImage {
   double command = 0.0;  ///< set-point before compensation, machine coordinates
@@ -48,8 +67,9 @@ struct AxisImage {
   AxisOwner owner = AxisOwner::none;
   JogEnd jog_end = JogEnd::none;
   std::int8_t process = 0;  ///< whose programs move it
-  Hand hand;                ///< that began its last jog; meaningful while it jogs
-  bool enabled = false;     ///< drive in Operation enabled and following
+  AxisGear gear;
+  Hand hand;             ///< that began its last jog; meaningful while it jogs
+  bool enabled = false;  ///< drive in Operation enabled and following
   bool homed = false;
   bool in_position = false;
   bool moving = false;

@@ -53,6 +53,7 @@ enum class RequestKind : std::uint8_t {
   function,    ///< index = image::Function; value = M code, tool number or rpm; packet = number of the
                ///< process' spindle, format = corrector of the tool
   path_wheel,  ///< index = image::WheelNews; value = 1 or 0, or counts
+  gear,        ///< axis, value = number of its electronic gear that engages, 0: it is disengaged; of the PLC
 };
 
 /// What `path_wheel` says of the handwheel that drives a program along its path.

@@ -103,13 +103,16 @@ void Axis::advance(double dt, image::Nanoseconds now) noexcept {
   const bool with_the_path = !by_itself && process_given_ && letting_go() && held_;
   const bool stops =
       reaction_ >= Reaction::stop_axes && !(reaction_ <= Reaction::stop_and_power_off && goes_with_master());
+  // One that follows a master is no more of a path than a spindle: it stays in step while programs stop.
   const bool stop_now = stops || (!power_.motion_permitted() && !with_the_path) ||
-                        (by_itself && reaction_ >= Reaction::stop_on_path);
+                        (by_itself && !geared() && reaction_ >= Reaction::stop_on_path);
   if (stop_now && !stopped_by_reaction_)
     take_away(reaction_ >= Reaction::stop_on_path ? image::JogEnd::alarm : image::JogEnd::power);
   const double before = set_.x;
   if (own_motion_)
     advance_own(dt, now);
+  else if (geared())
+    advance_geared(dt);
   else if (!by_itself && !stopped_by_reaction_)
     advance_process(dt);
   moving_ = set_.v != 0.0 || set_.a != 0.0 || set_.x != before || (own_motion_ && !ramp_.done()) ||
@@ -151,6 +154,15 @@ void Axis::advance_process(double dt) noexcept {
   set_ = next;
 }
 
+void Axis::advance_geared(double dt) noexcept {
+  if (!leaves_travel(geared_, true)) {
+    set_ = geared_;
+    return;
+  }
+  take_away();
+  advance_own(dt, 0);
+}
+
 void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
   if (torque_.leads()) return advance_torque(dt);
   if (!stopped_by_reaction_) {
@@ -171,7 +183,7 @@ void Axis::advance_own(double dt, image::Nanoseconds now) noexcept {
   end_jog(manual_ == Manual::increment ? image::JogEnd::arrived : image::JogEnd::travel);
   own_motion_ = false;
   manual_ = Manual::rest;
-  if (owner_ == AxisOwner::manual || owner_ == AxisOwner::homing) owner_ = AxisOwner::none;
+  if (owner_ == AxisOwner::manual || owner_ == AxisOwner::homing || geared()) owner_ = AxisOwner::none;
 }
 
 void Axis::advance_homing(double dt) noexcept {

@@ -32,6 +32,7 @@ struct Setpoint {
 /// In each cycle, in this order, everything real-time safe:
 ///   read(image)                 after the PLC scan: feedback, switches, K places
 ///   set_process(setpoint)       interpolation, where a process owns the axis
+///   set_geared(state)           where its master has it, while it follows one
 ///   react(reaction)             the strongest reaction in force
 ///   command(image)              set-point, supervision, drive command, K places
 /// Events found by read() and by command() stand in events() until clear_events() or the next read().
@@ -118,8 +119,20 @@ class Axis {
   /// Starts homing (method of the configuration); the axis becomes the homing's own until it ends. False: it
   /// may not move, or moves. What homing lacks (the reference of an absolute encoder) is an alarm of its own.
   bool home() noexcept;
-  /// Stops whatever this axis does by itself (jog, homing), at its limits.
+  /// Stops whatever this axis does by itself (jog, homing, following), at its limits.
   void stop() noexcept;
+  /// The axis belongs to an electronic gear from now on. False: it may not move, moves, or is somebody
+  /// else's.
+  bool engage() noexcept;
+  /// It does, or comes to rest behind it.
+  bool geared() const noexcept { return owner_ == image::AxisOwner::gear; }
+  /// It goes where set_geared() says.
+  bool follows() const noexcept {
+    return geared() && !own_motion_ && !stopped_by_reaction_ && reaction_ < image::Reaction::stop_axes;
+  }
+  /// Set-point of a cycle in which it follows(), inside its velocity, acceleration and jerk; one from which
+  /// it could not stop inside its travel any more is an alarm, and the axis stops. real-time safe.
+  void set_geared(const MotionState& state) noexcept { geared_ = state; }
   /// The window in which the axis counts as in position, mm or degrees, for as long as a program runs: at
   /// most following_error_limit of the configuration; 0: the configuration's own. real-time safe.
   void set_in_position_window(double window) noexcept;
@@ -189,6 +202,7 @@ class Axis {
   // axis.cpp: the owner's set-point and the way to the drive
   void advance(double dt, image::Nanoseconds now) noexcept;
   void advance_process(double dt) noexcept;
+  void advance_geared(double dt) noexcept;
   bool goes_with_master() const noexcept;
   void advance_own(double dt, image::Nanoseconds now) noexcept;
   void advance_homing(double dt) noexcept;
@@ -224,7 +238,7 @@ class Axis {
   void warn_of_following_error() noexcept;
   void supervise_switches() noexcept;
   void supervise_setpoint() noexcept;
-  bool leaves_travel(const MotionState& state) noexcept;
+  bool leaves_travel(const MotionState& state, bool exactly = false) noexcept;
   void supervise_power(PowerSequence::State before) noexcept;
   void supervise_brake() noexcept;
   void supervise_path_end(double dt) noexcept;
@@ -283,6 +297,7 @@ class Axis {
   double off_path_rest_s_ = 0.0;
   bool release_pending_ = false;
   Setpoint process_;
+  MotionState geared_;
 
   MotionState set_;
   double compensation_value_ = 0.0;

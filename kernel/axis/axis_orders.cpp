@@ -9,7 +9,7 @@ namespace servogate::axis {
 using image::AxisOwner;
 
 bool Axis::acquire(AxisOwner owner) noexcept {
-  if (owner_ != owner && (moving_ || own_motion_)) return false;
+  if (owner_ != owner && (moving_ || own_motion_ || geared())) return false;
   owner_ = owner;
   release_pending_ = false;
   return true;
@@ -169,7 +169,25 @@ bool Axis::home() noexcept {
   return true;
 }
 
+/// It may be a program's that rests meanwhile; the program then does without it.
+bool Axis::engage() noexcept {
+  const bool free = owner_ == AxisOwner::none || owner_ == AxisOwner::process ||
+                    (config_.auxiliary && owner_ == AxisOwner::plc);
+  if (!free || !motion_permitted() || !feed_enable_ || homing_.active() || own_motion_ || moving_)
+    return false;
+  owner_ = AxisOwner::gear;
+  release_pending_ = false;
+  geared_ = set_;
+  return true;
+}
+
 void Axis::stop() noexcept {
+  if (follows()) {
+    ramp_.reset(set_, config_.limits);
+    manual_ = Manual::rest;
+    own_motion_ = true;
+    return;
+  }
   if (!own_motion_) return;
   if (homing_.active()) homing_.abort(ramp_);
   torque_.end();

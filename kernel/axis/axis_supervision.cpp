@@ -190,11 +190,11 @@ void Axis::supervise_setpoint() noexcept {
 }
 
 /// The state could not come to rest inside the travel any more; raises the alarm.
-bool Axis::leaves_travel(const MotionState& state) noexcept {
+bool Axis::leaves_travel(const MotionState& state, bool exactly) noexcept {
   if (!homed_ || !config_.travel_limited || state.v == 0.0) return false;
   // The path keeps its limits to 0.1 %, so its own stop may be a little longer than the shortest one.
   const double way = Ramp::stopping_distance(state, config_.limits);
-  const double rest = state.x + way, slack = 1e-4 + 0.002 * std::abs(way);
+  const double rest = state.x + way, slack = exactly ? 1e-9 : 1e-4 + 0.002 * std::abs(way);
   const bool forward = state.v > 0.0;
   const double limit = forward ? config_.travel_max : config_.travel_min;
   if (forward ? rest <= limit + slack : rest >= limit - slack) return false;

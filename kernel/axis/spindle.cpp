@@ -325,11 +325,7 @@ void Spindle::command(image::ProcessImage& image) noexcept {
 }
 
 void Spindle::write_drive(image::ProcessImage& image, image::SpindleImage& out) const noexcept {
-  if (lent()) {
-    out.drive_command = image.axes[static_cast<std::size_t>(config_.axis)].drive_command;
-    out.drive_command.reset_fault = out.drive_command.reset_fault || reset_pending_;
-    return;
-  }
+  if (lent()) return pass_on(image);
   // A drive in its quick stop brakes, too: without power it would coast.
   const bool holds = on_ || (drive_.online && drive_.state == DriveState::quick_stop_active);
   const bool needed =
@@ -346,6 +342,13 @@ void Spindle::write_drive(image::ProcessImage& image, image::SpindleImage& out) 
   drive.position_counts = drive_.position_counts;
   drive.velocity_counts_s =
       on_ ? scale_.velocity_counts((command_rpm_ + correction_rpm_) / 60.0) * gears_.ratio() : 0.0;
+}
+
+void Spindle::pass_on(image::ProcessImage& image) const noexcept {
+  if (!lent()) return;
+  image::DriveCommand& drive = image.spindles[static_cast<std::size_t>(index_)].drive_command;
+  drive = image.axes[static_cast<std::size_t>(config_.axis)].drive_command;
+  drive.reset_fault = drive.reset_fault || reset_pending_;
 }
 
 void Spindle::supervise(double dt, bool speed_due) noexcept {

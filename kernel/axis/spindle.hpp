@@ -27,6 +27,14 @@ struct SpindleAngle {
   image::Nanoseconds at_ns = 0;  ///< machine time at which it stood there
 };
 
+/// What a follower asks of the spindle that leads it.
+struct LeadDemand {
+  bool by_setpoint = false;  ///< it is to be held to its commanded angle
+  bool in_step = false;      ///< both go together already
+  double rpm_s = 1e12;       ///< the most that it is to speed up ...
+  double rpm = 1e12;         ///< ... and turn
+};
+
 /// A spindle: ramped speed command, at-speed and standstill, oriented stop. Its supplier is a CSV drive in
 /// SpindleImage (CiA 402, or an inverter on a line), or an inverter on outputs of packet A. In each cycle:
 /// read(image), react(reaction), command(image); all real-time safe.
@@ -80,6 +88,7 @@ class Spindle {
   bool synchronous() const noexcept { return link_.synchronous(); }
   /// What a follower asks of its leader, before the leader's command() in each cycle. real-time safe.
   void lead(const Spindle& follower) noexcept;
+  void lead(const LeadDemand& demand) noexcept;
   /// The leader, which has had its command() of this cycle; before the follower's own. real-time safe.
   void follow(const Spindle& leader, const image::CycleTime& now) noexcept;
   /// It is to be the rotary axis of its configuration, or a spindle; see share(). real-time safe.
@@ -119,6 +128,13 @@ class Spindle {
   /// Of one whose threads go by its set-point: revolutions by which the commanded angle was ahead of angle()
   /// at the time of that; none: it is not led by its set-point now. real-time safe.
   std::optional<double> setpoint_ahead() const noexcept;
+  /// Of one that leads by its set-point: the commanded angle at a time, turns from the zero of angle(), speed
+  /// in turns/s and its change in this cycle, 1/s2. real-time safe.
+  std::optional<path::MasterState> commanded(image::Nanoseconds t_ns) const noexcept;
+  /// It leads nowhere: it stands, and nobody has told it to turn since. real-time safe.
+  bool rests() const noexcept { return rests_; }
+  /// Its drive is its axis', which has had its command() after the spindle's. real-time safe.
+  void pass_on(image::ProcessImage& image) const noexcept;
   /// Measured angle, 0-360 degrees, + clockwise; from the zero mark once it has been passed. real-time safe.
   double angle_deg() const noexcept { return angle_deg_; }
 
@@ -213,17 +229,14 @@ class Spindle {
   double place_ = 0.0;       ///< of the axis, where it goes on
   double changing_s_ = 0.0;  ///< so long it has been on its way
 
-  Coupling link_;           ///< to the leader
-  Led led_;                 ///< by it, in this cycle
-  double led_rpm_s_ = 0.0;  ///< ramp with which it and its leader go together
-  bool parting_ = false;    ///< it brakes behind its coupling, in step
-  bool rests_ = true;       ///< it leads nowhere
-  /// What followers ask of it, in this cycle.
-  struct Leading {
-    bool by_setpoint = false;
-    bool in_step = false;
-    double rpm_s = 1e12, rpm = 1e12;
-  } leading_;
+  Coupling link_;                                          ///< to the leader
+  Led led_;                                                ///< by it, in this cycle
+  double led_rpm_s_ = 0.0;                                 ///< ramp with which it and its leader go together
+  bool parting_ = false;                                   ///< it brakes behind its coupling, in step
+  bool rests_ = true;                                      ///< it leads nowhere
+  LeadDemand leading_;                                     ///< of all its followers, in this cycle
+  double last_rpm_ = 0.0;                                  ///< command_rpm_ one cycle ago
+  double command_turns_s_ = 0.0, command_turns_s2_ = 0.0;  ///< in the middle of what track_ has of this cycle
   AngleTrack track_;  ///< of the commanded angle, of one that leads by it
   double correction_rpm_ = 0.0, phase_error_deg_ = 0.0;
   double apart_s_ = 0.0;  ///< coupled and turning, and not in step

@@ -2,6 +2,7 @@
 // A spindle among others: the one that leads, and the one that follows its angle.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kernel/axis/spindle.hpp"
 
@@ -72,10 +73,15 @@ void Spindle::note_rest() noexcept {
 
 void Spindle::lead(const Spindle& follower) noexcept {
   const double ratio = std::abs(follower.link_.ratio());
-  leading_.by_setpoint = leading_.by_setpoint || follower.config_.coupling == CouplingBy::setpoint;
-  leading_.in_step = leading_.in_step || follower.synchronous() || follower.parting_;
-  leading_.rpm_s = std::min(leading_.rpm_s, kRampOf * follower.config_.acceleration / ratio);
-  leading_.rpm = std::min(leading_.rpm, kRoomToCatchUp * follower.fastest() / ratio);
+  lead({follower.config_.coupling == CouplingBy::setpoint, follower.synchronous() || follower.parting_,
+        kRampOf * follower.config_.acceleration / ratio, kRoomToCatchUp * follower.fastest() / ratio});
+}
+
+void Spindle::lead(const LeadDemand& demand) noexcept {
+  leading_.by_setpoint = leading_.by_setpoint || demand.by_setpoint;
+  leading_.in_step = leading_.in_step || demand.in_step;
+  leading_.rpm_s = std::min(leading_.rpm_s, demand.rpm_s);
+  leading_.rpm = std::min(leading_.rpm, demand.rpm);
 }
 
 void Spindle::follow(const Spindle& leader, const image::CycleTime& now) noexcept {
@@ -115,6 +121,11 @@ std::optional<double> Spindle::setpoint_ahead() const noexcept {
   return track_.at(master_.at_ns) - total_turns();
 }
 
+std::optional<path::MasterState> Spindle::commanded(image::Nanoseconds t_ns) const noexcept {
+  if (!track_.begun() || !master_.valid) return std::nullopt;
+  return path::MasterState{track_.at(t_ns), command_turns_s_, command_turns_s2_};
+}
+
 /// From where it was at its newest reading to where it was led to at that time.
 double Spindle::behind_turns(bool& led) const noexcept {
   led = enable_ && on_;
@@ -146,11 +157,16 @@ void Spindle::track_command(const image::CycleTime& now) noexcept {
       std::abs(track_.at(master_.at_ns) - total_turns()) > kMostOff)
     track_.forget();
   const image::Nanoseconds acts = now.t_ns + now.period_ns;
+  const double dt = now.period_s();
   if (!track_.begun()) {
     const double since = static_cast<double>(acts - master_.at_ns) * 1e-9;
     track_.put(total_turns() + since * actual_rpm_ / 60.0, acts);
+    last_rpm_ = command_rpm_;
   }
-  track_.put(track_.newest() + command_rpm_ / 60.0 * now.period_s(), acts + now.period_ns);
+  track_.put(track_.newest() + command_rpm_ / 60.0 * dt, acts + now.period_ns);
+  // Where the place of this cycle is, one speed goes over into the next.
+  command_turns_s2_ = (command_rpm_ - last_rpm_) / 60.0 / dt;
+  command_turns_s_ = 0.5 * (command_rpm_ + std::exchange(last_rpm_, command_rpm_)) / 60.0;
 }
 
 /// Before the set-point of the cycle.

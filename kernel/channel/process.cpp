@@ -162,6 +162,7 @@ void Process::interpolate(cycle::ProcessContext& c) noexcept {
   if (running_) {
     show_motion(sample, c.image.processes[static_cast<std::size_t>(config_.index)]);
     if (!aside_) drive_axes(sample, c);
+    watch_geared(sample, c);
     follow_master(sample, c);
     watch_probe(sample, c);
     if (sample.feed > 0.0 && !sample.rapid)

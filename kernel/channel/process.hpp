@@ -109,7 +109,7 @@ class Process final : public cycle::ProcessInCycle {
 
   /// What the rest of a held program counts on.
   struct Held {
-    std::array<double, path::kMaxAxes> place{};  ///< of own_axes(), machine coordinates
+    std::array<double, path::kMaxAxes> place{};  ///< of the path's axes, machine coordinates
     std::array<axis::SpindleMode, image::kMaxSpindles> mode{};
     std::array<double, image::kMaxSpindles> rpm{};
     std::int32_t tool = 0;
@@ -183,6 +183,7 @@ class Process final : public cycle::ProcessInCycle {
   void apply_reaction(cycle::ProcessContext& c) noexcept;
   image::Stop stop_without_alarm(const cycle::ProcessContext& c) const noexcept;
   void drive_axes(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
+  void watch_geared(const path::Sample& sample, cycle::ProcessContext& c) noexcept;
   void at_stop(cycle::ProcessContext& c) noexcept;
   void at_event(std::uint32_t id, cycle::ProcessContext& c) noexcept;
   bool execute(const Event& event, cycle::ProcessContext& c) noexcept;
@@ -249,6 +250,8 @@ class Process final : public cycle::ProcessInCycle {
   bool manual_data_ = false;             ///< the run is a typed block
   std::array<OwnAxis, path::kMaxAxes> own_{};
   std::size_t own_count_ = 0;
+  std::uint32_t taken_ = 0;  ///< axes, as bits, that an electronic gear took in this run: it has lost them
+  bool taken_told_ = false;
   bool running_ = false;               ///< a program is under way, held or waiting
   std::atomic<bool> stopping_{false};  ///< it ends as soon as the path is at rest
   image::ProcessState after_stop_ = image::ProcessState::idle;

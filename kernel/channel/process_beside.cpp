@@ -81,7 +81,7 @@ void Process::step_aside(cycle::ProcessContext& c) noexcept {
   forward_.reset();
   Held& h = held_as_;
   const std::span<const OwnAxis> own = own_axes();
-  for (std::size_t i = 0; i < own.size(); ++i) h.place[i] = c.axes[own[i].machine].setpoint().x;
+  for (const OwnAxis& a : own) h.place[a.path] = c.axes[a.machine].setpoint().x;
   for (std::size_t s = 0; s < c.spindles.size() && s < h.mode.size(); ++s) {
     h.mode[s] = c.spindles[s].mode();
     h.rpm[s] = c.spindles[s].ordered_rpm();
@@ -100,9 +100,8 @@ void Process::step_aside(cycle::ProcessContext& c) noexcept {
 
 /// The axes are the program's again, where it left them; false: they are not there, or not free.
 bool Process::come_back(cycle::ProcessContext& c) noexcept {
-  const std::span<const OwnAxis> own = own_axes();
-  for (std::size_t i = 0; i < own.size(); ++i)
-    if (std::abs(c.axes[own[i].machine].setpoint().x - held_as_.place[i]) > kSamePlace) return false;
+  for (const OwnAxis& own : own_axes())
+    if (std::abs(c.axes[own.machine].setpoint().x - held_as_.place[own.path]) > kSamePlace) return false;
   if (function_count_ != 0 || !acquire(c)) return false;
   aside_ = false;
   way_.clear();
@@ -187,10 +186,9 @@ void Process::work_beside(cycle::ProcessContext& c) noexcept {
 }
 
 void Process::show_beside(cycle::ProcessContext& c) const noexcept {
-  const std::span<const OwnAxis> own = own_axes();
-  for (std::size_t i = 0; i < own.size(); ++i)
-    c.image.axes[own[i].machine].beside =
-        aside_ ? c.axes[own[i].machine].setpoint().x - held_as_.place[i] : 0.0;
+  for (const OwnAxis& own : own_axes())
+    c.image.axes[own.machine].beside =
+        aside_ ? c.axes[own.machine].setpoint().x - held_as_.place[own.path] : 0.0;
 }
 
 }  // namespace servogate::channel

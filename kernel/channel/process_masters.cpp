@@ -77,6 +77,18 @@ void Process::raise_of_motion(image::AlarmNumber number, double value, double li
   raise(number, at, value, limit, c, axis);
 }
 
+/// The program cannot move an axis that follows a master, nor one that has left the path with it.
+void Process::watch_geared(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
+  for (std::size_t i = 0; i < config_.axes.machine.size() && !taken_told_ && !stopping_; ++i) {
+    const int a = config_.axes.machine[i];
+    const axis::Axis& axis = c.axes[static_cast<std::size_t>(a)];
+    const bool taken = axis.geared() || (taken_ >> a & 1u) != 0;
+    if (!taken || axis.process() != config_.index || sample.velocity[i] == 0.0) continue;
+    taken_told_ = true;
+    raise_of_motion(alarm::kGearedAxis, 0.0, 0.0, c, a);
+  }
+}
+
 void Process::follow_master(const path::Sample& sample, cycle::ProcessContext& c) noexcept {
   const path::ByMaster& master = sample.master;
   on_master_ = master.underway;

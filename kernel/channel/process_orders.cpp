@@ -122,6 +122,8 @@ bool Process::start(bool manual_data, bool block_by_block, cycle::ProcessContext
   stopping_ = held_ = go_on_ = false;
   forget_beside();
   probing_.forget();
+  taken_ = 0;
+  taken_told_ = false;
   probe_told_ = master_told_ = on_master_ = tapping_ = tap_halted_ = false;
   wheel_rests_ = wheel_lost_told_ = wheel_fast_told_ = false;
   stage_ = Stage::none;
@@ -162,7 +164,11 @@ void Process::find_own_axes(const cycle::ProcessContext& c) noexcept {
   own_count_ = 0;
   for (std::size_t i = 0; i < config_.axes.machine.size() && i < own_.size(); ++i) {
     const int a = config_.axes.machine[i];
-    if (c.axes[static_cast<std::size_t>(a)].process() == config_.index && !is_spindle(a, c))
+    const axis::Axis& axis = c.axes[static_cast<std::size_t>(a)];
+    // What a gear has moved is not where the path has it, until the next run begins from there.
+    if (running_ && axis.geared()) taken_ |= std::uint32_t{1} << a;
+    const bool taken = axis.geared() || (running_ && (taken_ >> a & 1u) != 0);
+    if (axis.process() == config_.index && !taken && !is_spindle(a, c))
       own_[own_count_++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(a)};
   }
 }

@@ -32,6 +32,7 @@ Cycle::Cycle(CycleParts parts)
     spindles_[i].configure(parts_.spindles[i], static_cast<int>(i));
   for (std::size_t p = 0; p < path_wheels_.size(); ++p)
     path_wheels_[p].configure(parts_.path_wheels[p], static_cast<int>(p));
+  configure_gears();
   for (const axis::SpindleConfig& s : parts_.spindles)
     if (s.axis >= 0) {
       axis::Axis& a = axes_[static_cast<std::size_t>(s.axis)];
@@ -52,6 +53,7 @@ bool Cycle::step() noexcept {
   for (const axis::Spindle& s : spindles_) s.show_drive(image_);
   for (axis::Axis& a : axes_) a.read(image_);
   for (axis::Spindle& s : spindles_) s.read(image_);
+  look_at_masters();
   watch_machine();
   collect_events();  // what the axes have just read acts in this cycle
   handle_requests();
@@ -179,11 +181,14 @@ void Cycle::run_axes() noexcept {
   for (axis::Spindle& s : spindles_)
     if (const int a = s.config().axis; a >= 0)
       s.share(axes_[static_cast<std::size_t>(a)], image_.now.period_s());
+  const std::uint32_t followers = followers_now();
   for (axis::Axis& a : axes_) {
     a.react(reaction_);
-    a.command(image_);
+    if ((followers >> a.index() & 1u) == 0) a.command(image_);
   }
+  for (axis::ElectronicGear& g : gears_) g.lead(geared_machine());
   axis::command_all(spindles_, reaction_, image_);
+  command_followers(followers);
   for (const image::AlarmRecord& r : notices_.records()) raise(r);
   notices_.clear();
   collect_events();
@@ -227,6 +232,11 @@ void Cycle::collect_events() noexcept {
     collect(a.events(), a.index(), a.process(), a.config().drive, nullptr);
     a.clear_events();
   }
+  for (axis::ElectronicGear& g : gears_) {
+    const axis::Axis& a = axes_[static_cast<std::size_t>(g.config().follower)];
+    collect(g.events(), a.index(), a.process(), a.config().drive, nullptr);
+    g.clear_events();
+  }
   for (axis::Spindle& s : spindles_) {
     collect(s.events(), -1, s.config().process, s.config().drive, &s);
     s.clear_events();
@@ -238,7 +248,8 @@ void Cycle::note_rest() noexcept {
   for (const axis::Axis& a : axes_) {
     if (a.homing().state() == axis::Homing::State::done)
       alarms_.cause_gone(axis::alarm::kHomingInterrupted, a.index());
-    rest = rest && a.standstill();
+    // Nobody's hand, and no alarm, moves what follows a master.
+    rest = rest && (a.standstill() || a.follows());
   }
   alarms_.note_rest(rest);
   if (manual_held_ && rest && !homing_.running()) manual_held_ = false;

@@ -11,6 +11,7 @@
 #include "firmware_if/image/process_image.hpp"
 #include "firmware_if/image/request.hpp"
 #include "kernel/axis/axis.hpp"
+#include "kernel/axis/coupling/electronic_gear.hpp"
 #include "kernel/axis/homing_sequence.hpp"
 #include "kernel/axis/spindle.hpp"
 #include "kernel/cycle/alarm/alarms.hpp"
@@ -18,6 +19,7 @@
 #include "kernel/cycle/boundary/participants.hpp"
 #include "kernel/cycle/boundary/snapshot.hpp"
 #include "kernel/cycle/gate/gate.hpp"
+#include "kernel/cycle/plc_orders/gear_order.hpp"
 #include "kernel/cycle/plc_orders/handwheel.hpp"
 #include "kernel/cycle/plc_orders/path_wheel.hpp"
 #include "kernel/cycle/plc_orders/plc_motion.hpp"
@@ -54,6 +56,8 @@ struct CycleParts {
   std::optional<image::Place> alive_place;  ///< output that toggles as MC.control_alive does
   std::optional<image::Place> start_place;  ///< operator's start button: its rising edge asks for cycle start
   std::array<PathWheelConfig, image::kMaxProcesses> path_wheels{};
+  /// No ring of them (machine/check). The PLC knows those of an axis by their order here, from 1.
+  std::vector<axis::ElectronicGearConfig> gears;
   /// By which the age of requests is judged; nullptr: CLOCK_MONOTONIC, which a stopped process does not stop.
   const image::Clock* request_clock = nullptr;
 };
@@ -178,6 +182,19 @@ class Cycle {
   void jog_of_plc(axis::Axis& axis) noexcept;
   void follow_handwheel(Handwheel& wheel, axis::Axis& axis) noexcept;
   void follow_path_wheel(PathWheel& wheel) noexcept;
+  // executive_gears.cpp
+  void configure_gears();
+  axis::ElectronicGear::Machine geared_machine() noexcept { return {axes_, spindles_}; }
+  axis::ElectronicGear* gear_of(int axis, double number) noexcept;
+  int gears_of(int axis) const noexcept;
+  void follow_gear(GearOrder& order, axis::Axis& axis) noexcept;
+  bool gear_awaited(const GearOrder& order, const axis::Axis& a) noexcept;
+  bool engage_gear(const image::Request& request) noexcept;
+  void disengage_gears(int axis) noexcept;
+  void look_at_masters() noexcept;
+  std::uint32_t followers_now() const noexcept;
+  void command_followers(std::uint32_t followers) noexcept;
+  void show_gears() noexcept;
   void move_auxiliary(PlcMotion& motion, axis::Axis& axis) noexcept;
   void stop_manual(bool with_plc) noexcept;
   void run_processes() noexcept;
@@ -199,6 +216,8 @@ class Cycle {
   image::ProcessImage image_;
   std::vector<axis::Axis> axes_;
   std::vector<axis::Spindle> spindles_;
+  std::vector<axis::ElectronicGear> gears_;
+  std::vector<std::uint8_t> masters_first_;  ///< all axes
   axis::HomingSequence homing_;
   AlarmList alarms_;
   Notices notices_;
@@ -226,6 +245,7 @@ class Cycle {
   std::array<PlcMotion, image::kMaxAxes> plc_motion_{};
   std::array<Handwheel, image::kMaxAxes> handwheels_{};
   std::array<PathWheel, image::kMaxProcesses> path_wheels_{};
+  std::array<GearOrder, image::kMaxAxes> gear_orders_{};
   bool logic_held_ = false;  ///< for single scans
   std::array<std::int16_t, image::kMaxProcesses> external_alarm_{};
   std::array<image::Quality, image::kMaxSources> source_quality_{};

@@ -82,6 +82,10 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   for (std::size_t p = 0; p < parts_.processes.size(); ++p)
     if (parts_.processes[p]->stopping()) context.stopping |= 1u << p;
   context.path_wheel = process < parts_.processes.size() && path_wheels_[process].declared();
+  if (request.kind == RequestKind::gear) {
+    context.gears = gears_of(request.axis);
+    context.gear = gear_of(request.axis, request.value);
+  }
   context.homing_runs = homing_.running();
   context.manual_held = manual_held_;
   context.holder = holder_;
@@ -211,6 +215,8 @@ Refusal Cycle::carry_out(const Request& request) noexcept {
     case RequestKind::reposition:
     case RequestKind::retrace:
       return along_path(request);
+    case RequestKind::gear:
+      return engage_gear(request) ? Refusal::none : Refusal::axis_moves;
     case RequestKind::path_wheel:
       path_wheels_[static_cast<std::size_t>(request.process)].take(request);
       break;
@@ -355,6 +361,7 @@ Refusal Cycle::carry_out_motion(const Request& request, axis::Axis& a) noexcept 
 
 void Cycle::stop_manual(bool with_plc) noexcept {
   homing_.abort(axes_);
+  if (with_plc) disengage_gears(-1);
   for (axis::Axis& a : axes_)
     if (a.owner() == image::AxisOwner::manual || a.owner() == image::AxisOwner::homing ||
         (with_plc && a.owner() == image::AxisOwner::plc))
@@ -394,6 +401,7 @@ void Cycle::handle_plc_requests() noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     jog_of_plc(axes_[i]);
     follow_handwheel(handwheels_[i], axes_[i]);
+    follow_gear(gear_orders_[i], axes_[i]);
   }
   for (std::size_t p = 0; p < parts_.processes.size(); ++p) follow_path_wheel(path_wheels_[p]);
   for (std::size_t i = 0; i < axes_.size(); ++i)

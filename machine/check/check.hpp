@@ -54,6 +54,8 @@ void check_gpio_lines(const MachineConfig& machine, Reading& reading);
 void check_boards(const MachineConfig& machine, Reading& reading);
 /// Spindles that follow another one, and by what angle threads go.
 void check_couplings(const MachineConfig& machine, Reading& reading);
+/// Axes that follow another one, or a spindle.
+void check_electronic_gears(const MachineConfig& machine, Reading& reading);
 /// Spindles that become a rotary axis.
 void check_spindle_axes(const LoadResult& loaded, Reading& reading);
 /// Gear ranges of spindles.

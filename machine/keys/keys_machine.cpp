@@ -407,6 +407,8 @@ const Section& section_of<MachineConfig>() {
       key<&C::pendants>("pendant", {}, "hand-held pendants", "выносные пульты"),
       key<&C::path_wheels>("path_wheel", {}, "handwheels that drive programs along their path",
                            "маховички движения программы по контуру"),
+      key<&C::electronic_gears>("gear", {}, "axes that follow another axis or a spindle",
+                                "оси, следующие за другой осью или шпинделем"),
       key<&C::simulation>("simulation", {}, "what the mocks do; without effect on what is real",
                           "поведение имитаторов; на настоящее не действует"),
   };

@@ -38,6 +38,8 @@ std::span<const std::string_view> choices_of<Coupling>();
 template <>
 std::span<const std::string_view> choices_of<ThreadMaster>();
 template <>
+std::span<const std::string_view> choices_of<GearSource>();
+template <>
 std::span<const std::string_view> choices_of<InverterProtocol>();
 template <>
 std::span<const std::string_view> choices_of<ConnectionLoss>();
@@ -84,6 +86,8 @@ template <>
 const Section& section_of<PendantConfig>();
 template <>
 const Section& section_of<PathWheelConfig>();
+template <>
+const Section& section_of<ElectronicGearConfig>();
 template <>
 const Section& section_of<PendantMap>();
 template <>

@@ -83,6 +83,7 @@ void check_all(LoadResult& result, Reading& reading) {
   check_boards(machine, reading);
   check_gears(machine, reading);
   check_couplings(machine, reading);
+  check_electronic_gears(machine, reading);
   check_spindle_axes(result, reading);
   check_devices(result, reading);
   check_station_devices(result, reading);

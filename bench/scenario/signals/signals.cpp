@@ -21,7 +21,7 @@ constexpr std::string_view kStates[] = {"idle",  "running", "held", "waiting", "
                                         "ended", "stopped"};
 constexpr std::string_view kModes[] = {"off",    "mdi",       "automatic", "step",
                                        "manual", "increment", "profile",   "home"};
-constexpr std::string_view kOwners[] = {"none", "process", "manual", "homing", "plc", "bench"};
+constexpr std::string_view kOwners[] = {"none", "process", "manual", "homing", "plc", "bench", "gear"};
 constexpr std::string_view kJogEnds[] = {"none", "arrived", "asked", "silent",
                                          "feed", "travel",  "alarm", "power"};
 constexpr std::string_view kDrives[] = {
@@ -35,6 +35,8 @@ constexpr std::string_view kWaits[] = {"none",          "signal",         "m_ack
                                        "override_zero", "spindle_stands", "path_wheel"};
 static_assert(std::size(kWaits) == image::kWaitReasons && std::size(kJogEnds) == image::kJogEnds);
 
+constexpr std::string_view kGears[] = {"none", "engaging", "in_step", "disengaging", "refused"};
+static_assert(std::size(kGears) == image::kGearStates);
 constexpr std::string_view kQualities[] = {"never", "good", "stale", "bad"};
 
 double on(bool b) { return b ? 1.0 : 0.0; }
@@ -53,6 +55,8 @@ constexpr AxisRow kAxis[] = {
     {"acceleration", "", "mm/s2", "deg/s2", {}, [](const AxisImage& a) { return a.command_acceleration; }},
     {"distance_to_go", "", "mm", "deg", {}, [](const AxisImage& a) { return a.distance_to_go; }},
     {"beside", "", "mm", "deg", {}, [](const AxisImage& a) { return a.beside; }},
+    {"phase_error", "", "mm", "deg", {}, [](const AxisImage& a) { return a.gear.phase_error; }},
+    {"gear_state", "", "", "", kGears, [](const AxisImage& a) { return static_cast<double>(a.gear.state); }},
     {"torque", "", "%", "%", {}, [](const AxisImage& a) { return a.drive.torque_permille / 10.0; }},
     {"enabled", "", "", "", kSwitch, [](const AxisImage& a) { return on(a.enabled); }},
     {"homed", "", "", "", kSwitch, [](const AxisImage& a) { return on(a.homed); }},
@@ -118,7 +122,13 @@ constexpr QuantityRow kQuantities[] = {
     {"X.limit_plus, X.limit_minus, X.home_switch", "", "on or off", "on или off"},
     {"X.missed", "", "cycles in a row without fresh process data of the drive",
      "тактов подряд без свежих данных процесса от привода"},
-    {"X.owner", "", "none, process, manual, homing, plc, bench", "none, process, manual, homing, plc, bench"},
+    {"X.owner", "", "none, process, manual, homing, plc, bench, gear",
+     "none, process, manual, homing, plc, bench, gear"},
+    {"X.gear_state", "", "none, engaging, in_step, disengaging, refused",
+     "none, engaging, in_step, disengaging, refused"},
+    {"X.phase_error", "mm, deg",
+     "of an axis that is geared: how far it is behind its master, as both are measured",
+     "оси с электронным редуктором: насколько она отстаёт от ведущей, по измерениям обеих"},
     {"X.jog_end", "", "none, arrived, asked, silent, feed, travel, alarm, power",
      "none, arrived, asked, silent, feed, travel, alarm, power"},
     {"X.drive", "", "state of CiA 402: operation_enabled, fault, offline ...",

@@ -132,6 +132,12 @@ const Entry kInGear{"client.in-gear", "{0}, gear {1}", "{0}, ступень {1}"
 const Entry kNoGear{"client.no-gear", "{0}, in no gear", "{0}, ступень не включена"};
 const Entry kAtSpeed{"client.at-speed", "{0}, at speed", "{0}, частота достигнута"};
 
+const Entry kGearInStep{"client.gear-in-step", ", in step with {0}, {1} {2} behind",
+                        ", в синхронизме с {0}, отстаёт на {1} {2}"};
+const Entry kGearEngages{"client.gear-engages", ", getting into step with {0}, {1} {2} behind",
+                         ", входит в синхронизм с {0}, отстаёт на {1} {2}"};
+const Entry kGearEnds{"client.gear-ends", ", comes to rest behind {0}", ", останавливается после {0}"};
+const Entry kGearRefused{"client.gear-refused", ", gear not engaged: {0}", ", редуктор не включён: {0}"};
 const Entry kIsAxis{"client.spindle-is-axis", "{0}, it is axis {1}", "{0}, работает как ось {1}"};
 const Entry kPhaseError{"client.phase-error", "{0}, phase error {1}°", "{0}, ошибка по углу {1}°"};
 
@@ -238,6 +244,17 @@ void print_programs(const json& s) {
   }
 }
 
+std::string gear_words(const json& axis, const json& gear) {
+  const std::string state = of(gear, "state"), master = of(gear, "master");
+  const std::string off = fixed(gear.value("phase_error", 0.0), 4), unit = of(axis, "unit");
+  if (state == "refused") return say(kGearRefused, {of(gear, "refusal")});
+  if (state == "disengaging") return say(kGearEnds, {master});
+  if (state == "engaging" || state == "in_step")
+    return say(state == "in_step" ? kGearInStep : kGearEngages,
+               {master, off, text::in_language(text::unit_words(unit))});
+  return {};
+}
+
 void print_axis(const json& a) {
   const bool russian = text::user_language() == text::Language::russian;
   const auto words = [&](const char* in_english, const char* in_russian) {
@@ -249,6 +266,7 @@ void print_axis(const json& a) {
   if (a.value("moving", false)) facts += words(", moving", ", движется");
   if (const double beside = a.value("beside", 0.0); beside != 0.0)
     facts += words(", away from the path by ", ", отведена от контура на ") + fixed(beside, 4);
+  if (const json gear = a.value("gear", json()); gear.is_object()) facts += gear_words(a, gear);
   if (a.value("on_limit", 0) != 0) facts += words(", on the hard limit", ", на концевом выключателе");
   const std::string unit = text::in_language(text::unit_words(of(a, "unit"))) +
                            (a.value("diameter", false) ? words(" (diameter)", " (диаметр)") : "");

@@ -109,6 +109,7 @@ std::unique_ptr<Control> Control::compose(const machine::LoadResult& loaded,
     if (const machine::PointConfig* healthy = m.point(w.healthy); healthy != nullptr)
       wheel.healthy = healthy->place;
   }
+  for (const machine::ElectronicGearConfig& g : m.electronic_gears) parts.gears.push_back(gear_config(m, g));
   parts.stopwatch = &c->stopwatch_;
   c->cycle_ = std::make_unique<cycle::Cycle>(std::move(parts));
   c->cycle_->attach(source);

@@ -24,7 +24,8 @@ bool figures_are_lengths(image::AlarmNumber n) {
   return (n >= kFollowingError && n <= kSetpointStep) ||
          (n >= kHomingSwitchNotFound && n <= kHomingIndexNotFound) || n == kHomingLimitAgain ||
          n == kHomingInterrupted || n == kHomingIndexNearEdge || n == kHomingDriveFailed || n == kOffPath ||
-         n == kPlaceUnknown || n == kFollowingErrorHigh || n == kTorqueTooFast || n == kDriveOffline;
+         n == kPlaceUnknown || n == kFollowingErrorHigh || n == kTorqueTooFast ||
+         (n >= kGearWindow && n <= kGearNotInStep) || n == kDriveOffline;
 }
 
 /// Which figures of an alarm are places of the axis, not lengths: a diameter axis shows them as diameters.
@@ -35,7 +36,8 @@ struct Places {
 constexpr Places kPlaces[] = {
     {alarm::kOffPath, false, true},           {alarm::kPlaceUnknown, true, true},
     {alarm::kHomingLimitAgain, true, false},  {alarm::kHomingInterrupted, true, false},
-    {alarm::kHomingDriveFailed, true, false}, {alarm::kDriveOffline, true, false}};
+    {alarm::kHomingDriveFailed, true, false}, {alarm::kDriveOffline, true, false},
+    {alarm::kGearDisengaged, true, false}};
 
 bool of_spindle(const AlarmRecord& r) { return r.number >= 1200 && r.number < 1300; }
 
@@ -72,6 +74,27 @@ std::string break_words(double why, const std::string& axis, Language language) 
   }
 }
 
+std::string master_words(double master, const AlarmNames& names, Language language) {
+  const int axis = static_cast<int>(master);
+  if (axis >= 0) return image::name_at(names.axes, axis);
+  const std::string name = axis == -1 ? "S" : "S" + std::to_string(-axis);
+  return (language == Language::russian ? "шпиндель " : "spindle ") + name;
+}
+
+/// What disengaged a gear, by GearEnd.
+std::string disengaged_words(double why, const std::string& axis, Language language) {
+  const bool russian = language == Language::russian;
+  switch (static_cast<GearEnd>(static_cast<int>(why))) {
+    case GearEnd::feed:
+      return russian ? "ПЛК снял " + axis + ".feed_enable" : "the PLC withdrew " + axis + ".feed_enable";
+    case GearEnd::power:
+      return russian ? "ось потеряла питание или разрешение" : "the axis lost its power or its enable";
+    case GearEnd::alarm:
+      break;
+  }
+  return russian ? "ось остановила авария" : "an alarm stopped the axis";
+}
+
 std::string state_words(double state, Language language) {
   return std::string(image::drive_state_text(static_cast<int>(state), language));
 }
@@ -96,6 +119,10 @@ class AxisWords final : public image::AlarmWords {
       out[7] = r.detail2 > 0.0 ? mode_awaited_words(language) : "";
     }
     if (r.number == alarm::kFollowingError) out[7] = torque_words(r.detail2, language);
+    if (r.number >= alarm::kGearWindow && r.number <= alarm::kGearNotInStep) {
+      out[6] = disengaged_words(r.detail1, out[0], language);
+      out[7] = master_words(r.detail2, names, language);
+    }
     if (r.number == alarm::kHomingInterrupted) out[6] = break_words(r.detail1, out[0], language);
   }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+
 #include "firmware_if/image/alarm.hpp"
 #include "firmware_if/image/alarm_numbers.hpp"
 
@@ -54,6 +56,12 @@ inline constexpr AlarmNumber kSpindleCoupled = 1212;
 inline constexpr AlarmNumber kSpindleNoAxis = 1213;
 inline constexpr AlarmNumber kSpindleIsAxis = 1214;
 
+inline constexpr AlarmNumber kGearWindow = 1301;
+inline constexpr AlarmNumber kGearTooFast = 1302;
+inline constexpr AlarmNumber kGearMasterLost = 1303;
+inline constexpr AlarmNumber kGearDisengaged = 1304;
+inline constexpr AlarmNumber kGearNotInStep = 1305;
+
 inline constexpr AlarmNumber kDriveFault = 2001;
 inline constexpr AlarmNumber kDriveRefuses = 2002;
 inline constexpr AlarmNumber kDriveOffline = 2003;
@@ -67,6 +75,14 @@ namespace servogate::axis {
 constexpr bool is_drive_loss(image::AlarmNumber number) noexcept {
   return number == alarm::kDriveOffline || number == alarm::kPdoMissing;
 }
+
+/// Why a gear was disengaged that nobody asked to be: detail1 of alarm::kGearDisengaged. detail2 of the
+/// alarms of gears is the master: the place of an axis, or -1 minus that of a spindle.
+enum class GearEnd : std::uint8_t {
+  feed,   ///< the PLC took the feed enable of the follower away
+  power,  ///< the follower lost its power or its enable
+  alarm,  ///< an alarm stopped the follower
+};
 
 /// Something an axis or spindle found wrong in this cycle; the executive makes an alarm record of it.
 struct Event {

@@ -339,6 +339,54 @@ inline constexpr image::AlarmRow kAxisRows[] = {
       "{0}: работает как поворотная ось и заданий вращения не принимает"},
      "Make it a spindle again first: the second M function of axis_m, or a reset.",
      "Сначала верните режим шпинделя: вторая функция M из axis_m или сброс."},
+    {alarm::kGearWindow,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"gear.window", "{0}: {1} off its place behind {7}, {2} allowed (window); its gear is disengaged",
+      "{0}: отстоит от положения по {7} на {1}, допустимо {2} (window); редуктор выключен"},
+     "Look at part and tool. See what held the follower or jerked its master: load, speed changes quicker "
+     "than "
+     "the follower's limits, following error; or allow a wider `window` of [[gear]].",
+     "Осмотрите деталь и инструмент. Выясните, что задержало ведомую или дёрнуло ведущую: нагрузка, "
+     "изменение "
+     "скорости быстрее пределов ведомой, ошибка слежения; либо увеличьте `window` в [[gear]]."},
+    {alarm::kGearTooFast,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"gear.too_fast", "{0}: {7} goes so fast that the gear asks for {1}/s, at most {2}/s; it is disengaged",
+      "{0}: {7} движется так быстро, что редуктор требует {1}/с, возможно {2}/с; он выключен"},
+     "Look at part and tool. Run the master more slowly: at most max_velocity of the follower divided by the "
+     "`ratio`.",
+     "Осмотрите деталь и инструмент. Ведущая должна двигаться медленнее: не быстрее max_velocity ведомой, "
+     "делённой на `ratio`."},
+    {alarm::kGearMasterLost,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"gear.master_lost", "{0}: {7}, which it follows, is lost; its gear is disengaged",
+      "{0}: {7}, за которой она следует, потеряна; редуктор выключен"},
+     "Look at part and tool. See what its master lost: its drive, its power, its home position or zero mark, "
+     "or "
+     "the readings of its encoder.",
+     "Осмотрите деталь и инструмент. Выясните, что потеряла ведущая: привод, питание, выход в ноль или "
+     "нулевую "
+     "метку, показания датчика."},
+    {alarm::kGearDisengaged,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"gear.disengaged", "{0}: disengaged from {7} at {1}: {6}", "{0}: редуктор от {7} выключен на {1}: {6}"},
+     "Look at part and tool. Disengage before the follower is stopped, or remove what stopped it.",
+     "Осмотрите деталь и инструмент. Выключайте редуктор до останова ведомой или устраните причину "
+     "останова."},
+    {alarm::kGearNotInStep,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"gear.not_in_step", "{0}: does not get into step with {7}: {1} off its place, {2} allowed (window)",
+      "{0}: не входит в синхронизм, ведущая — {7}: отстоит от положения на {1}, допустимо {2} (window)"},
+     "See whether the speed of its master is steady, and whether the follower's following error at that "
+     "speed "
+     "is below half of `window`.",
+     "Проверьте, постоянна ли скорость ведущей и меньше ли половины `window` ошибка слежения ведомой на этой "
+     "скорости."},
     {alarm::kDriveFault,
      image::Reaction::stop_on_path,
      image::ResetCondition::cause_gone,

@@ -113,11 +113,11 @@ struct AxisConfig {
       image::Reaction::stop_on_path;  ///< to the loss of its drive, or a stronger one
 };
 
-/// By what a spindle follows another one, where a program couples them.
+/// By what a spindle or an axis follows another one.
 enum class CouplingBy : std::uint8_t {
   none,      ///< it is never coupled
-  setpoint,  ///< the set-point angle, to which the other one is held by its position
-  measured,  ///< the angle that the other one's encoder shows
+  setpoint,  ///< the set-point; a spindle that leads is then held to it by its position
+  measured,  ///< what the other one's encoder shows
 };
 
 /// A spindle, as plain data from the machine file.
@@ -152,6 +152,22 @@ struct SpindleConfig {
   CouplingBy coupling = CouplingBy::none;
   double coupling_window = 2.0;  ///< degrees off the angle it is led to; beyond: synchronism is lost
   int axis = -1;  ///< place in the image of the rotary axis that it becomes, with the same drive; -1: none
+};
+
+/// An axis that follows another one, or a spindle, at a ratio of whole numbers. Turns are those of spindles
+/// and rotary axes; of a linear axis a millimetre counts as one.
+struct ElectronicGearConfig {
+  int follower = -1;                ///< place of the axis in the image
+  int master_axis = -1;             ///< place of the axis that leads; -1: the spindle
+  int master_spindle = -1;          ///< place of the spindle that leads
+  std::int64_t follower_turns = 1;  ///< not 0; below 0 it goes the other way ...
+  std::int64_t master_turns = 1;    ///< ... for so many of its master, above 0
+  CouplingBy by = CouplingBy::setpoint;
+  double window = 1.0;          ///< mm or degrees of the follower off its place; beyond: alarm
+  std::optional<double> phase;  ///< mm or degrees of the follower where its master is at zero; none: where
+                                ///< both are when the follower has its speed
+
+  bool operator==(const ElectronicGearConfig&) const = default;
 };
 
 }  // namespace servogate::axis

@@ -12,18 +12,28 @@ constexpr double kSettles = 0.05;  // s inside of half the window until it count
 
 }  // namespace
 
-void Coupling::begin(const CouplingOrder& order) noexcept {
+void Coupling::begin(const CouplingOrder& order, ComesRound round) noexcept {
   on_ = true;
   placed_ = synchronous_ = false;
   ratio_ = static_cast<double>(order.follower_turns) / static_cast<double>(order.leader_turns);
   phase_ = order.phase_deg / 360.0;
   shift_ = inside_s_ = 0.0;
-  equal_ = order.leader_turns / std::gcd(order.leader_turns, std::abs(order.follower_turns));
-  estimate_ = path::MasterEstimate{};
+  const auto equal =
+      static_cast<double>(order.leader_turns / std::gcd(order.leader_turns, std::abs(order.follower_turns)));
+  spacing_ = round == ComesRound::both       ? 1.0 / equal
+             : round == ComesRound::leader   ? std::abs(ratio_)
+             : round == ComesRound::follower ? 1.0
+                                             : 0.0;
 }
 
-void Coupling::choose(double behind) noexcept {
-  shift_ -= std::round(behind * equal_) / equal_;
+double Coupling::to_nearest(double behind) const noexcept {
+  return spacing_ > 0.0 ? behind - std::round(behind / spacing_) * spacing_ : behind;
+}
+
+void Coupling::choose(double behind) noexcept { capture(behind - to_nearest(behind)); }
+
+void Coupling::capture(double behind) noexcept {
+  shift_ -= behind;
   placed_ = true;
   inside_s_ = 0.0;
 }

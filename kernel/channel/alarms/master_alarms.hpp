@@ -2,8 +2,8 @@
 #pragma once
 #include "firmware_if/image/alarm.hpp"
 
-/// Numbers of the alarms of motions by the spindle's angle, by a handwheel along the path, and of probes;
-/// their texts stand in program_rows.hpp.
+/// Numbers of the alarms of motions by the spindle's angle, by a handwheel along the path, of electronic
+/// gears, and of probes; their texts stand in program_rows.hpp.
 namespace servogate::channel::alarm {
 
 using image::AlarmNumber;
@@ -27,5 +27,6 @@ inline constexpr AlarmNumber kProbeNotLatched = 4116;
 inline constexpr AlarmNumber kThreadStarved = 4117;
 inline constexpr AlarmNumber kPathWheelLost = 4118;
 inline constexpr AlarmNumber kPathWheelFast = 4119;
+inline constexpr AlarmNumber kGearedAxis = 4120;
 
 }  // namespace servogate::channel::alarm

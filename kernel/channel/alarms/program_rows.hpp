@@ -233,6 +233,16 @@ inline constexpr image::AlarmRow kProgramRows[] = {
      "raise `full_speed` of [[path_wheel]].",
      "Быстрее запрограммированного контур не проходится, лишние импульсы отбрасываются. Вращайте медленнее "
      "или увеличьте `full_speed` в [[path_wheel]]."},
+    {alarm::kGearedAxis,
+     image::Reaction::stop_on_path,
+     image::ResetCondition::reset,
+     {"gear.program", "{9}: the program moves {0}, which an electronic gear has taken from it",
+      "{9}: программа перемещает {0}, а эту ось у неё взял электронный редуктор"},
+     "Let the program move {0} before its gear is engaged only. After the gear it belongs to the next "
+     "program, "
+     "which begins where the axis is then.",
+     "Программа может перемещать {0} только до включения редуктора. После него осью владеет следующая "
+     "программа: она начинает с того места, где ось стоит."},
 };
 
 }  // namespace servogate::channel

@@ -92,6 +92,7 @@ class Decision {
   }
   bool free(const Axis& a) noexcept {
     const AxisOwner o = a.owner();
+    if (a.geared()) return refuse(Refusal::axis_geared, a.index());
     const bool own = (o == AxisOwner::plc && r_.asker == Asker::plc) ||
                      (o == AxisOwner::bench && r_.asker == Asker::bench);
     if (a.config().auxiliary && r_.asker != Asker::plc)
@@ -104,8 +105,10 @@ class Decision {
       if (a.moving()) return refuse(Refusal::axis_moves, a.index());
     return true;
   }
-  /// The axis is one that the programs of the request's process move.
-  bool of_process(const Axis& a) const noexcept { return !a.config().auxiliary && a.process() == r_.process; }
+  /// The axis is one that the programs of the request's process move now.
+  bool of_process(const Axis& a) const noexcept {
+    return !a.config().auxiliary && !a.geared() && a.process() == r_.process;
+  }
   bool power() noexcept;
   bool not_switching_off(const Axis& a) noexcept;
   bool home() noexcept;
@@ -117,6 +120,8 @@ class Decision {
   bool along_path() noexcept;
   bool function() noexcept;
   bool path_wheel() noexcept;
+  bool gear() noexcept;
+  bool gear_can_follow(const Axis& a) noexcept;
   bool as_it_was_held() noexcept;
   bool auxiliary() noexcept;
   bool move(const Axis& a) noexcept;

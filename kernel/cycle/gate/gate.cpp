@@ -12,7 +12,7 @@ namespace servogate::cycle {
 namespace decision {
 
 Answer Decision::run() noexcept {
-  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::path_wheel;
+  const bool known = r_.kind > RequestKind::none && r_.kind <= RequestKind::gear;
   if (!known)
     refuse(Refusal::unknown_request);
   else if (!may_ask(r_.asker).has(r_.kind))
@@ -43,6 +43,8 @@ bool Decision::decide_kind() noexcept {
       return function();
     case RequestKind::path_wheel:
       return path_wheel();
+    case RequestKind::gear:
+      return gear();
     case RequestKind::jog_stop:
       return r_.axis < 0 || axis_known();
     case RequestKind::zero:
@@ -158,6 +160,7 @@ bool Decision::auxiliary() noexcept {
     return (c_.drives_wanted || refuse(Refusal::drives_not_wanted, r_.axis)) && not_switching_off(a);
   if (c_.axis_stopping) return refuse(Refusal::axis_stopping, r_.axis);
   if (!ready(a)) return false;
+  if (a.geared()) return refuse(Refusal::axis_geared, r_.axis);
   if (a.homing().active()) return refuse(Refusal::homing_runs);
   if (r_.kind == RequestKind::torque) return torque(a);
   if (r_.kind != RequestKind::axis_home) return move(a);
@@ -175,6 +178,37 @@ bool Decision::move(const Axis& a) noexcept {
   if (!(r_.acceleration >= 0.0 && r_.acceleration <= most.acceleration))
     return refuse(Refusal::acceleration_range, r_.axis, r_.acceleration, most.acceleration);
   return inside_travel(a);
+}
+
+/// The follower begins to move as its master does. A program that moves it rests on it meanwhile.
+bool Decision::gear() noexcept {
+  if (!axis_known()) return false;
+  if (r_.value == 0.0) return true;
+  const Axis& a = c_.axes[static_cast<std::size_t>(r_.axis)];
+  if (c_.gear == nullptr) return refuse(Refusal::no_gear, r_.axis, r_.value, c_.gears);
+  if (!no_alarm(Reaction::stop_on_path)) return false;
+  if (a.geared()) return refuse(Refusal::axis_geared, r_.axis);
+  if (!a.homed()) return refuse(Refusal::not_homed, r_.axis);
+  if (!ready(a)) return false;
+  if (a.on_limit_plus() || a.on_limit_minus())
+    return refuse(Refusal::on_hard_limit, r_.axis, a.on_limit_plus() ? 1.0 : -1.0);
+  if (a.homing().active()) return refuse(Refusal::homing_runs);
+  if (a.owner() == AxisOwner::bench)
+    return refuse(Refusal::axis_owned, r_.axis, static_cast<double>(a.owner()));
+  if (a.moving()) return refuse(Refusal::axis_moves, r_.axis);
+  if (const double away = c_.image->axes[static_cast<std::size_t>(r_.axis)].beside; away != 0.0)
+    return refuse(Refusal::off_path, r_.axis, away);
+  return gear_can_follow(a);
+}
+
+bool Decision::gear_can_follow(const Axis& a) noexcept {
+  const axis::ElectronicGear& g = *c_.gear;
+  if (!g.master_known()) return refuse(Refusal::gear_master, r_.axis);
+  const double asked = std::abs(g.speed_asked(c_.axes, c_.spindles)), most = a.config().limits.velocity;
+  if (asked > most) return refuse(Refusal::gear_too_fast, r_.axis, asked, most);
+  const double off = g.off_place(c_.axes);
+  return std::abs(off) <= g.config().window ||
+         refuse(Refusal::gear_off_place, r_.axis, off, g.config().window);
 }
 
 /// Where the torque takes the axis is not known: it is watched on its way instead.

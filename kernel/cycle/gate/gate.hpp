@@ -10,6 +10,7 @@
 #include "firmware_if/image/request.hpp"
 #include "firmware_if/text/finding.hpp"
 #include "kernel/axis/axis.hpp"
+#include "kernel/axis/coupling/electronic_gear.hpp"
 #include "kernel/axis/spindle.hpp"
 #include "kernel/cycle/boundary/participants.hpp"
 
@@ -84,6 +85,12 @@ enum class Refusal : std::uint16_t {
   tool_differs,     ///< value: the tool that was in the spindle then
   axis_is_spindle,  ///< axis: its drive is a spindle's now
   no_path_wheel,    ///< the machine file declares no handwheel for the path of this process
+  // Of electronic gears:
+  no_gear,         ///< axis; value: the number that was asked for; limit: how many the axis has
+  axis_geared,     ///< axis: it follows a master
+  gear_master,     ///< axis: its master gives no position
+  gear_too_fast,   ///< axis; value: the speed that the master asks for; limit: the axis' largest
+  gear_off_place,  ///< axis; value: how far it is off its place behind its master; limit: window
 };
 
 /// Largest magnitude, in mm or degrees, of a value that `zero` gives a position, and of a jog of an axis
@@ -97,8 +104,10 @@ struct GateContext {
   std::span<const axis::Spindle> spindles;
   image::Reaction reaction = image::Reaction::none;  ///< in force
   image::AlarmNumber first_alarm = 0;
-  bool program_loaded = false;  ///< of the request's process
-  bool path_wheel = false;      ///< the process of the request has one
+  bool program_loaded = false;                 ///< of the request's process
+  bool path_wheel = false;                     ///< the process of the request has one
+  const axis::ElectronicGear* gear = nullptr;  ///< that the request names, nullptr: there is none
+  int gears = 0;                               ///< of the request's axis
   std::uint32_t stopping =
       0;  ///< bit of each process whose program has been ended and whose path still stops
   bool homing_runs = false;

@@ -11,7 +11,7 @@ bool Decision::jog_beside(const Axis& a) noexcept {
   if (c_.beside.functions) return refuse(Refusal::function_runs);
   if (c_.beside.returns) return refuse(Refusal::axis_moves, c_.beside.axis);
   for (const Axis& b : c_.axes)
-    if (&b != &a && !b.config().auxiliary && b.process() == a.process() && b.moving())
+    if (&b != &a && !b.config().auxiliary && !b.geared() && b.process() == a.process() && b.moving())
       return refuse(Refusal::axis_moves, b.index());
   const bool another_leg = c_.beside.axis != a.index();
   return !(another_leg && c_.beside.full) || refuse(Refusal::way_back_full, c_.beside.axis);

@@ -176,8 +176,26 @@ constexpr text::Entry kTexts[] = {
     {"gate.no_path_wheel",
      "no handwheel drives programs of this process: `[[path_wheel]]` of the machine file declares it",
      "у этого процесса нет маховичка движения по контуру: его объявляет `[[path_wheel]]` файла станка"},
+    {"gate.no_gear", "{0} has no gear number {1}: `[[gear]]` of the machine file gives it {2}",
+     "у {0} нет редуктора номер {1}: в `[[gear]]` файла станка их {2}"},
+    {"gate.axis_geared",
+     "{0} follows its master by an electronic gear: disengage it first (the PLC sets {0}.gear to 0; "
+     "`servogate stop` stops all)",
+     "{0} следует за ведущей через электронный редуктор: сначала выключите его (ПЛК записывает 0 в {0}.gear; "
+     "`servogate stop` останавливает всё)"},
+    {"gate.gear_master",
+     "the master of {0} gives no position: it is not homed, its zero mark has not been passed, or its drive "
+     "does not answer",
+     "положение ведущей для {0} неизвестно: она не выведена в ноль, не пройдена нулевая метка или не "
+     "отвечает "
+     "привод"},
+    {"gate.gear_too_fast", "the master asks {0} for {1} {3}/s, at most {2} {3}/s: run the master more slowly",
+     "ведущая требует от {0} {1} {3}/с, возможно {2} {3}/с: замедлите ведущую"},
+    {"gate.gear_off_place",
+     "{0} is {1} {3} off its place behind its master, {2} {3} allowed (`window`): jog it there first",
+     "{0} отстоит от положения по ведущей на {1} {3}, допустимо {2} {3} (`window`): сначала переместите её"},
 };
-static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::no_path_wheel) + 1);
+static_assert(std::size(kTexts) == static_cast<std::size_t>(Refusal::gear_off_place) + 1);
 static_assert(static_cast<int>(Refusal::axis_error_stop) == 38,
               "programs of PLCs know these numbers as ErrorID (docs/plc.md): new ones come last");
 
@@ -189,9 +207,13 @@ constexpr std::string_view kAskers[][2] = {{"the command line", "командн�
                                            {"Modbus", "Modbus"},
                                            {"the program", "программа"},
                                            {"the bench", "стенд"}};
-constexpr std::string_view kOwners[][2] = {
-    {"nobody", "никто"},        {"a program", "программа"}, {"manual control", "ручное управление"},
-    {"homing", "выход в ноль"}, {"the PLC", "ПЛК"},         {"the bench", "стенд"}};
+constexpr std::string_view kOwners[][2] = {{"nobody", "никто"},
+                                           {"a program", "программа"},
+                                           {"manual control", "ручное управление"},
+                                           {"homing", "выход в ноль"},
+                                           {"the PLC", "ПЛК"},
+                                           {"the bench", "стенд"},
+                                           {"an electronic gear", "электронный редуктор"}};
 constexpr std::string_view kModes[][2] = {{"off", "выкл."}, {"MDI", "MDI"},   {"AUTO", "AUTO"},
                                           {"STEP", "STEP"}, {"MANU", "MANU"}, {"MANJ", "MANJ"},
                                           {"PROF", "PROF"}, {"HOME", "HOME"}};
@@ -229,7 +251,9 @@ constexpr std::string_view kKinds[][2] = {{"none", "нет"},
                                           {"give an axis to a process", "передача оси процессу"},
                                           {"change origins or tools", "изменение начал и инструмента"},
                                           {"return to the path", "возврат на контур"},
-                                          {"a typed function", "функция, введённая вручную"}};
+                                          {"a typed function", "функция, введённая вручную"},
+                                          {"the handwheel of a path", "маховичок движения по контуру"},
+                                          {"an electronic gear", "электронный редуктор"}};
 
 template <std::size_t N>
 std::string word(const std::string_view (&table)[N][2], double index, Language language) {

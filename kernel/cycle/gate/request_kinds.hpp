@@ -49,13 +49,14 @@ inline constexpr Kinds kPanel =
 /// Of the auxiliary axes, the PLC's alone.
 inline constexpr Kinds kMoves{move_absolute, move_relative, move_velocity, torque};
 inline constexpr Kinds kAuxiliary = kMoves | Kinds{axis_power, axis_home, axis_stop, axis_reset};
-inline constexpr Kinds kBegins = kJogs | kMoves | Kinds{home,       start,     step,       resume,  power,
-                                                        axis_power, axis_home, reposition, retrace, function};
+inline constexpr Kinds kBegins =
+    kJogs | kMoves |
+    Kinds{home, start, step, resume, power, axis_power, axis_home, reposition, retrace, function, gear};
 
 /// Never too old. Of these kinds a value of 0 only takes away: power off, an override of 0, a wheel that is
 /// lost.
 inline constexpr Kinds kTakesAway = kStops | Kinds{reset, axis_stop, axis_reset};
-inline constexpr Kinds kTakesAwayAtZero{power, axis_power, override_feed, path_wheel};
+inline constexpr Kinds kTakesAwayAtZero{power, axis_power, override_feed, path_wheel, gear};
 
 /// What speaks to a process. All else works on a machine that has none (a bench of drives) just as well.
 inline constexpr Kinds kOfProcess =
@@ -75,7 +76,7 @@ constexpr Kinds may_ask(image::Asker asker) noexcept {
     case image::Asker::pendant:
       return kPanel;
     case image::Asker::plc:
-      return kPanel.without(zero) | kAuxiliary;
+      return kPanel.without(zero) | kAuxiliary | Kinds{gear};
     case image::Asker::modbus:
       return kStops | Kinds{set_place};
     case image::Asker::program:

@@ -377,7 +377,7 @@ TEST_F(Gate, writes_the_operators_words_of_k_and_nothing_that_belongs_to_others)
 
 TEST_F(Gate, has_a_whole_sentence_in_both_languages_for_every_refusal) {
   const auto table = refusal_texts();
-  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::no_path_wheel) + 1);
+  ASSERT_EQ(table.size(), static_cast<std::size_t>(Refusal::gear_off_place) + 1);
   for (std::size_t i = 1; i < table.size(); ++i) {
     image::Answer a;
     a.refusal = static_cast<std::uint16_t>(i);

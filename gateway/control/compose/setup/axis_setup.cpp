@@ -265,6 +265,20 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
   return c;
 }
 
+axis::ElectronicGearConfig gear_config(const machine::MachineConfig& m,
+                                       const machine::ElectronicGearConfig& g) {
+  axis::ElectronicGearConfig c;
+  c.follower = m.axis_index(g.follower);
+  c.master_axis = m.axis_index(g.master);
+  c.master_spindle = m.spindle_index(g.master);
+  c.follower_turns = g.ratio[0];
+  c.master_turns = g.ratio[1];
+  c.by = g.source == machine::GearSource::measured ? axis::CouplingBy::measured : axis::CouplingBy::setpoint;
+  c.window = g.window;
+  if (g.in_phase) c.phase = g.phase;
+  return c;
+}
+
 channel::ProcessConfig process_config(const machine::MachineConfig& m, int index) {
   channel::ProcessConfig c;
   c.index = index;

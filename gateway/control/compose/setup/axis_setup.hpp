@@ -19,6 +19,8 @@ axis::SpindleConfig spindle_config(const machine::LoadResult& loaded, const mach
 /// Counts of a spindle's encoder in one turn of its motor, to the nearest; 0: no encoder. What a drive calls
 /// a revolution is one of its motor.
 std::int64_t counts_per_motor_turn(const machine::SpindleConfig& spindle);
+axis::ElectronicGearConfig gear_config(const machine::MachineConfig& machine,
+                                       const machine::ElectronicGearConfig& gear);
 /// Process `index` (from 0) with the axes that programs move as its path axes, those of other processes too:
 /// they rest on its path.
 channel::ProcessConfig process_config(const machine::MachineConfig& machine, int index);

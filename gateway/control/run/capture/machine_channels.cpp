@@ -35,6 +35,13 @@ constexpr std::array kAxisFields = std::to_array<Field<AxisImage>>({
     {"to_go", "mm", [](const AxisImage& a) { return a.distance_to_go; }},
     {"owner", "", [](const AxisImage& a) { return static_cast<double>(a.owner); }},
     {"moving", "", [](const AxisImage& a) { return on(a.moving); }},
+    {"gear", "", [](const AxisImage& a) { return static_cast<double>(a.gear.state); }},
+    {"phase_error", "mm",
+     [](const AxisImage& a) {
+       const bool follows =
+           a.gear.state == image::GearState::engaging || a.gear.state == image::GearState::in_step;
+       return follows ? a.gear.phase_error : std::numeric_limits<double>::quiet_NaN();
+     }},
     {"drive.target", "counts", [](const AxisImage& a) { return static_cast<double>(a.drive_command.position_counts); }},
     {"drive.position", "counts", [](const AxisImage& a) { return static_cast<double>(a.drive.position_counts); }},
     {"drive.velocity", "counts/s", [](const AxisImage& a) { return a.drive.velocity_counts_s; }},

@@ -16,7 +16,9 @@ using nlohmann::json;
 constexpr const char* kModes[] = {"off", "mdi", "auto", "step", "manual", "increment", "profile", "home"};
 constexpr const char* kStates[] = {"idle",  "running", "held", "waiting", "stopped_by_alarm",
                                    "ended", "stopped"};
-constexpr const char* kOwners[] = {"none", "process", "manual", "homing", "plc", "bench"};
+constexpr const char* kOwners[] = {"none", "process", "manual", "homing", "plc", "bench", "gear"};
+constexpr const char* kGearStates[] = {"none", "engaging", "in_step", "disengaging", "refused"};
+static_assert(std::size(kGearStates) == image::kGearStates);
 constexpr const char* kDriveStates[] = {
     "offline",     "not_ready_to_switch_on", "switch_on_disabled", "ready_to_switch_on",
     "switched_on", "operation_enabled",      "quick_stop_active",  "fault_reaction_active",
@@ -103,6 +105,13 @@ json json_of(const AxisReport& r) {
   json end;
   if (a.jog_end != image::JogEnd::none)
     end = {{"reason", jog_end_name(a.jog_end)}, {"code", jog_end_code(a.jog_end)}, {"text", r.jog_end}};
+  json gear;
+  if (!r.gear_master.empty())
+    gear = {{"number", a.gear.number},
+            {"master", r.gear_master},
+            {"state", kGearStates[static_cast<int>(a.gear.state)]},
+            {"phase_error", measure(a.gear.phase_error)},
+            {"refusal", r.gear_refusal.empty() ? json() : json(r.gear_refusal)}};
   return {{"letter", r.letter},
           {"unit", r.unit},
           {"diameter", r.diameter},
@@ -121,6 +130,7 @@ json json_of(const AxisReport& r) {
           {"in_position", a.in_position},
           {"owner", kOwners[static_cast<int>(a.owner)]},
           {"jog_end", end},
+          {"gear", gear},
           {"drive", kDriveStates[static_cast<int>(a.drive.state)]},
           {"on_limit", a.limit_plus    ? 1
                        : a.limit_minus ? -1

@@ -49,6 +49,9 @@ struct AxisReport {
   int origin = -1;        ///< number of the one in force by hand, -1: no program moves the axis
   image::AxisImage axis;  ///< in radius
   std::string jog_end;    ///< why its last jog ended; empty: it goes on, or there was none
+  std::string
+      gear_master;  ///< as the machine file names it, of the gear in force or asked for last; or empty
+  std::string gear_refusal;  ///< why that was not engaged; empty: it was
 };
 
 /// What turns a spindle: a drive on a bus, an inverter on a Modbus line, or outputs without feedback.

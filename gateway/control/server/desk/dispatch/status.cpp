@@ -88,6 +88,21 @@ AxisReport axis_report(const machine::AxisConfig& config, const image::AxisImage
   return report;
 }
 
+void put_gear(const machine::MachineConfig& m, text::Language language, std::size_t index,
+              AxisReport& report) {
+  const image::AxisGear& gear = report.axis.gear;
+  int number = gear.number;
+  for (const machine::ElectronicGearConfig& g : m.electronic_gears)
+    if (g.follower == report.letter && --number == 0) report.gear_master = g.master;
+  if (gear.refusal == 0) return;
+  image::Answer answer;
+  answer.refusal = gear.refusal;
+  answer.axis = static_cast<std::int8_t>(index);
+  answer.value = gear.refused_value;
+  answer.limit = gear.refused_limit;
+  report.gear_refusal = cycle::render(answer, m.letters(), language, m.unit_words());
+}
+
 std::vector<BusReport> bus_reports(const machine::MachineConfig& m, const image::ProcessImage& image) {
   std::vector<BusReport> buses;
   for (std::size_t b = 0; b < m.buses.size(); ++b) {
@@ -192,6 +207,7 @@ StatusReport status_report(Resident& resident, const PlcDesk& plc, text::Languag
     status.homing = status.homing || image.axes[n].owner == image::AxisOwner::homing;
     if ((image.homing_left >> i & 1u) != 0) status.homing_left.push_back(m.axes[n].letter);
     status.axes.push_back(axis_report(m.axes[n], image.axes[n], language));
+    put_gear(m, language, n, status.axes.back());
     const auto p = static_cast<std::size_t>(image.axes[n].process);
     if (m.axes[n].auxiliary || p >= coordinates.size()) continue;
     status.axes.back().work = shown(m.axes[n], coordinates[p].frame.to_programmed(stands, i));
