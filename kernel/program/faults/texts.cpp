@@ -256,9 +256,11 @@ constexpr text::Entry kMessages[] = {
     {"P758", "the second spindle follows this one: end the coupling before it becomes axis {0}",
      "второй шпиндель следует за этим: отмените связь, прежде чем он станет осью {0}"},
     {"P749",
-     "threads, rigid taps and starts at the zero mark go by the measured angle of the spindle, and this one has "
+     "threads, rigid taps and starts at the zero mark go by the measured angle of the spindle, and this one "
+     "has "
      "no encoder: give its drive one (counts_per_rev in the machine file), or tap with a floating holder",
-     "резьба, жёсткое нарезание метчиком и пуск по нулевой метке идут по измеренному углу шпинделя, а у него нет "
+     "резьба, жёсткое нарезание метчиком и пуск по нулевой метке идут по измеренному углу шпинделя, а у него "
+     "нет "
      "датчика: дайте приводу датчик (counts_per_rev в файле станка) или режьте метчиком в плавающем патроне"},
 };
 static_assert(std::size(kMessages) == static_cast<std::size_t>(Fault::spindle_no_angle) + 1);

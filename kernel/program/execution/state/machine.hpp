@@ -47,11 +47,11 @@ struct MachineModel {
   double spindle_min_rpm = 0.0;  ///< of the spindle that S speaks to; 0: as slow as one likes
   double spindle_max_rpm = 0.0;  ///< 0: not known, S is not compared with it
   double coupled_max_rpm = 0.0;  ///< of the second spindle, which may follow the first; 0: none may
-  bool spindle_angle = true;     ///< of the first spindle is measured: threads, rigid taps and its mark need it
-  int spindle_axis = -1;         ///< the axis that the first spindle becomes, -1: none ...
-  int spindle_axis_on_m = 0;     ///< ... by this M function,
-  int spindle_axis_off_m = 0;    ///< and by this one it is a spindle again
-  int tool_places = 0;           ///< of the magazine or turret: T takes 0 to this number; 0: not known
+  bool spindle_angle = true;   ///< of the first spindle is measured: threads, rigid taps and its mark need it
+  int spindle_axis = -1;       ///< the axis that the first spindle becomes, -1: none ...
+  int spindle_axis_on_m = 0;   ///< ... by this M function,
+  int spindle_axis_off_m = 0;  ///< and by this one it is a spindle again
+  int tool_places = 0;         ///< of the magazine or turret: T takes 0 to this number; 0: not known
   double contour_tolerance_mm = 0.01;
   ArcFeed arc_feed = ArcFeed::tool_centre;  ///< until a word of the program chooses
   /// Power-on modes and values in the dialect's own words, e.g. {"G94", "G97", "G90", "G71"}; the values of
