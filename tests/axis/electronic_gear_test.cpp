@@ -304,6 +304,20 @@ TEST(ElectronicGear, is_disengaged_by_a_master_that_is_faster_than_the_follower)
   EXPECT_TRUE(m.inside());
 }
 
+TEST(ElectronicGear, that_does_not_come_into_step_is_given_up_with_an_alarm) {
+  Machine m;
+  ElectronicGearConfig finer_than_the_encoder = hob();
+  finer_than_the_encoder.window = 0.0005;
+  m.gear(finer_than_the_encoder);
+  m.spindles[0].order(SpindleMode::cw, 600.0);
+  m.run(2000);
+  ASSERT_TRUE(m.engage());
+  ASSERT_TRUE(m.until([&] { return !m.gears.on(); }, 20000));
+  EXPECT_TRUE(m.raised(alarm::kGearNotInStep));
+  EXPECT_TRUE(m.at_rest());
+  EXPECT_TRUE(m.inside());
+}
+
 TEST(ElectronicGear, stops_inside_the_travel_of_the_follower_with_an_alarm) {
   Machine m;
   m.gear(slide(CouplingBy::setpoint, 2, 1));
