@@ -67,6 +67,7 @@ class Process final : public cycle::ProcessInCycle {
   /// called on another thread: it sees what the cycle has given back as it was at the begin, and the cycle
   /// sees what has been published at the end. Orders wait for the end.
   Reading reading() const { return feeder_.reading(follower_.driven()); }
+  /// For how long the cycle needs nothing of what reading beside it gives, see Feeder::spare().
   double spare() const { return feeder_.spare(follower_.driven()); }
   void begin_beside() noexcept;
   void work_beside(double seconds) { feeder_.work_beside(seconds); }

@@ -10,7 +10,6 @@ namespace {
 constexpr double kSlow = 0.9, kStands = 0.005;   // of the programmed feed
 constexpr double kRises = 1.0;                   // a second, while it speeds up from rest
 constexpr std::size_t kKept = 256;               // places
-constexpr double kReached = 0.6;                 // of a limit: it is what binds
 constexpr double kLongest = 0.5, kLeast = 0.01;  // s lost in one place; in several blocks, and at all
 
 }  // namespace
