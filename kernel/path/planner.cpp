@@ -17,19 +17,6 @@
 namespace servogate::path {
 namespace {
 
-constexpr std::size_t kUndecided = 64;  // elements by which the law of a run is chosen
-
-/// s in which the elements' speed is changed, at the limits of the axes that move.
-double change_time(const Leg& leg, double v, int axes) {
-  double a = std::numeric_limits<double>::infinity(), j = a;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
-    if (!moves(leg, i)) continue;
-    a = std::min(a, (*leg.limits)[i].acceleration);
-    j = std::min(j, (*leg.limits)[i].jerk);
-  }
-  return v / a + a / j;
-}
-
 /// An arc that needs so much of its axes at its feed that it is a good deal faster as a course.
 bool needs_its_axes(const Leg& leg, double v, int axes) {
   constexpr double kAcceleration = 0.25, kJerk = 0.1;  // of the limits
@@ -94,7 +81,7 @@ struct Planner::Impl final : ContourSink {
   /// What takes the elements since the last rest.
   enum class Run : std::uint8_t {
     none,
-    undecided,  ///< they wait for more of them
+    undecided,  ///< there is one of them, which waits for another
     spans,      ///< the law from span to span
     course,     ///< the law over one clock
   };
@@ -158,28 +145,21 @@ bool Planner::Impl::same_feed(const Element& e) const {
   return (e.revolutions > 0.0) == (before.element.revolutions > 0.0);
 }
 
-/// The one place where the law is chosen: by the first elements of a run, in which a course gains at each
-/// end of an element and along tight arcs, and costs by the time of them.
+/// The one place where the law is chosen: two elements and more are a course. A single one needs none, from
+/// rest to rest along a line, and along an arc that needs little of its axes.
 Planner::Impl::Run Planner::Impl::suitable() const {
-  constexpr double kGain = 0.5, kTight = 2.5;
-  if ((waiting.size() < 2 && waiting.front().piece.shape == Piece::Shape::line) ||
-      !std::all_of(waiting.begin(), waiting.end(), [&](const Waiting& w) { return suits_course(w.element); }))
+  if (!std::all_of(waiting.begin(), waiting.end(), [&](const Waiting& w) { return suits_course(w.element); }))
     return Run::spans;
+  if (waiting.size() > 1) return Run::course;
+  const Waiting& single = waiting.front();
+  if (single.piece.shape == Piece::Shape::line) return Run::spans;
   if (config.law == Law::course) return Run::course;
-  double time = 0.0, gain = 0.0;
-  for (const Waiting& w : waiting) {
-    Leg leg;
-    leg.piece = w.piece;
-    leg.limits = &config.limits;
-    leg.axes = axes_moved(config, w.piece);
-    leg.feed = w.element.feed;
-    const double v = fastest(leg, config.axis_count);
-    const double alone = w.piece.length / v;
-    time += alone;
-    gain +=
-        needs_its_axes(leg, v, config.axis_count) ? kTight * alone : change_time(leg, v, config.axis_count);
-  }
-  return kGain * gain > time ? Run::course : Run::spans;
+  Leg leg;
+  leg.piece = single.piece;
+  leg.limits = &config.limits;
+  leg.axes = axes_moved(config, single.piece);
+  leg.feed = single.element.feed;
+  return needs_its_axes(leg, fastest(leg, config.axis_count), config.axis_count) ? Run::course : Run::spans;
 }
 
 bool Planner::Impl::rests_before(const Element& e, const Piece& piece) const {
@@ -193,7 +173,7 @@ bool Planner::Impl::rests_before(const Element& e, const Piece& piece) const {
 void Planner::Impl::wait(const Element& e, const Piece& piece) {
   if (waiting.empty()) waiting_from = at;
   waiting.push_back({e, piece});
-  if (waiting.size() >= kUndecided) decide();
+  if (waiting.size() > 1) decide();
 }
 
 void Planner::Impl::decide() {

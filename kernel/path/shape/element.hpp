@@ -26,7 +26,7 @@ struct AxisLimits {
 
 /// How speed goes over the path; one law from rest to rest.
 enum class Law : std::uint8_t {
-  fitting,  ///< a course where elements take less than half the time of a change of speed, else spans
+  fitting,  ///< a course of two elements and more and of arcs that need much of their axes, else spans
   spans,    ///< S-curves from span to span, acceleration zero between them
   course,   ///< shape and law over one clock, acceleration carried through
 };
