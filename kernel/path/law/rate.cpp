@@ -141,15 +141,52 @@ bool Interval::take(const CourseView& view, std::int64_t m, const RateLimits& li
   return true;
 }
 
-Interval::Along Interval::along(const Vector& direction, int axes) const noexcept {
-  Along out{};
+double Interval::speed(double in, int axes) const noexcept {
+  const double s = in / tau_.seconds, f = tau_.at(s);
+  double sum = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
-    out.start += direction[i] * start_[i];
-    out.slope += direction[i] * slope_[i];
-    out.bend += direction[i] * bend_[i];
-    out.third += direction[i] * third_[i];
+    const double y1 = slope_[i] + f * (bend_[i] + 0.5 * f * third_[i]);
+    sum += y1 * y1;
+  }
+  return std::sqrt(sum) * tau_.d1(s);
+}
+
+Interval::Pace Interval::pace(double in, int axes) const noexcept {
+  const double s = in / tau_.seconds, f = tau_.at(s), w = tau_.d1(s), w2 = tau_.d2(s), w3 = tau_.d3(s);
+  double vv = 0.0, va = 0.0, aa = 0.0, vj = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    const double y2 = bend_[i] + f * third_[i], y1 = slope_[i] + f * (bend_[i] + 0.5 * f * third_[i]);
+    const double v = y1 * w, a = y2 * w * w + y1 * w2;
+    const double j = third_[i] * w * w * w + 3.0 * y2 * w * w2 + y1 * w3;
+    vv += v * v;
+    va += v * a;
+    aa += a * a;
+    vj += v * j;
+  }
+  const double v = std::sqrt(vv);
+  if (!(v > 0.0)) return {0.0, 0.0, 0.0};
+  const double a = va / v;
+  return {v, a, (aa + vj - a * a) / v};
+}
+
+Vector Interval::jerk(double in, const RateState& rate, int axes) const noexcept {
+  const double s = in / tau_.seconds, f = tau_.at(s), w = tau_.d1(s), w2 = tau_.d2(s), w3 = tau_.d3(s);
+  const double r = rate.rate, v = w * r, a = w2 * r * r + w * rate.slope;
+  const double j = w3 * r * r * r + 3.0 * w2 * r * rate.slope + w * rate.bend;
+  Vector out{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
+    const double y2 = bend_[i] + f * third_[i], y1 = slope_[i] + f * (bend_[i] + 0.5 * f * third_[i]);
+    out[i] = third_[i] * v * v * v + 3.0 * y2 * v * a + y1 * j;
   }
   return out;
+}
+
+double Interval::length(double from, double to, int axes) const noexcept {
+  constexpr double kPlace = 0.7745966692414834, kOuter = 5.0 / 18.0, kInner = 8.0 / 18.0;
+  const double mid = 0.5 * (from + to), half = 0.5 * (to - from);
+  if (even_) return (to - from) * speed(mid, axes);
+  return (to - from) * (kOuter * (speed(mid - kPlace * half, axes) + speed(mid + kPlace * half, axes)) +
+                        kInner * speed(mid, axes));
 }
 
 CoursePoint Interval::at(double in, double rate, double slope, int axes) const noexcept {

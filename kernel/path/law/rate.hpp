@@ -102,12 +102,16 @@ class Interval {
   bool keeps(double in, const RateState& rate, const RateLimits& limits) const noexcept;
   /// The course `in` seconds behind its begin, with velocity and acceleration at this rate.
   CoursePoint at(double in, double rate, double slope, int axes) const noexcept;
-  /// The spline's place along a direction of the axes, and its derivatives, at the interval's begin.
-  struct Along {
-    double start, slope, bend, third;
-    double at(double f) const noexcept { return start + f * (slope + f * (0.5 * bend + f * third / 6.0)); }
+  /// The speed along the path, in the measure of the axes, and its derivatives by law time.
+  struct Pace {
+    double v, a, j;
   };
-  Along along(const Vector& direction, int axes) const noexcept;
+  Pace pace(double in, int axes) const noexcept;
+  /// Third derivative by time, at this rate.
+  Vector jerk(double in, const RateState& rate, int axes) const noexcept;
+  double speed(double in, int axes) const noexcept;
+  /// The way along the path between two law times, by Gauss' rule of three places; below 0 backwards.
+  double length(double from, double to, int axes) const noexcept;
   /// The spline's parameter by law time, 0 to 1.
   const Quintic& tau() const noexcept { return tau_; }
   /// A straight at constant speed.
@@ -157,23 +161,26 @@ class Verification {
 /// the last stop that is known. real-time safe.
 bool reaches_stop(const CourseView& view, const LawTime& at, double r1, double beyond) noexcept;
 
-/// The early branch of a course: where its path is straight, or hardly bent, the speed along it goes by
-/// constant jerk at the limits of the axes, whatever the law does there, and law time follows from the place.
-/// On the way the rate may be up to kAbove beyond 1: the law leaves a reserve that the ramp need not leave.
-/// Everything here is real-time safe.
-class StraightRamp {
+/// The early branch of a course: the speed along the path goes by constant jerk, by what the path's bend
+/// leaves of the axes, whatever the law does there, and law time follows from the place. On the way the rate
+/// may be up to kAbove beyond 1: the law leaves a reserve that the ramp need not leave. Everything here is
+/// real-time safe.
+class PathRamp {
  public:
   static constexpr double kAbove = 6e-3;
+  static constexpr std::size_t kPlans = 7;  ///< the fastest ones first
   /// The state of a motion on the course.
   struct From {
     LawTime time;
     std::int64_t knot = 1;
     double rate = 1.0, slope = 0.0;
   };
-  /// The way to `target` times the law's speed, or to rest where that is the other way round, by `share` of
-  /// the limits. False: the path is bent, the motion would turn round, too little is published, or more
-  /// knots would be passed than `places`, which it counts down.
-  bool plan(const CourseView& view, const RateLimits& limits, const From& from, double target, double share,
+  /// Looks at the path from here on, once for some plans. False: the law rests.
+  bool begin(const CourseView& view, const RateLimits& limits, const From& from) noexcept;
+  /// The way to `target` times the law's speed, or to rest where that is the other way round. False: the
+  /// motion would turn round, too little is published, or more knots would be passed than `places`, which it
+  /// counts down.
+  bool plan(const CourseView& view, const RateLimits& limits, double target, std::size_t number,
             int& places) noexcept;
   /// Whether it keeps all limits to its end. Counts the places down that it looks at, one between knots for
   /// two, and stops at 0.
@@ -193,35 +200,47 @@ class StraightRamp {
   std::int64_t knot() const noexcept { return interval_.knot(); }
 
  private:
-  void take_along(int axes) noexcept { along_ = interval_.along(direction_, axes); }
+  /// The axes and the path where the ramp begins.
+  struct Here {
+    Box straight;        ///< of the axes in the direction of the path
+    Box any;             ///< in any direction
+    Vector along{};      ///< velocity of the law
+    double curve = 0.0;  ///< curvature of the path, 1/mm
+  };
   bool take(const CourseView& view, std::int64_t m, const RateLimits& limits) noexcept;
   bool step_on(const CourseView& view, const RateLimits& limits, bool forwards) noexcept;
   bool move_to(const CourseView& view, const RateLimits& limits, double s, int* places) noexcept;
-  bool look(const MotionState& motion, double jerk) noexcept;
+  void move_in(double s, int axes) noexcept;
+  bool look(const MotionState& motion, double jerk, int axes) noexcept;
   double fastest_ahead(const CourseView& view, const RateLimits& limits, int& places) noexcept;
-  bool begins_straight(const RateLimits& limits, const CoursePoint& law, double rate,
-                       MotionState& along) noexcept;
-  bool straight_at(double in, const RateLimits& limits) const noexcept;
-  bool aim(const CourseView& view, const RateLimits& limits, const MotionState& now, double wanted,
-           const Box& box, int& places) noexcept;
+  bool bent(double speed) const noexcept;
+  bool goes_straight(int axes) const noexcept;
+  Box box(std::size_t number, double fastest, double change) const noexcept;
+  double jerk_left(const CourseView& view, const RateLimits& limits, double seconds,
+                   const MotionState& motion, double sense) const noexcept;
+  bool leave_acceleration(const CourseView& view, const RateLimits& limits, const MotionState& now, double v1,
+                          std::size_t number) noexcept;
+  bool aim(const CourseView& view, const RateLimits& limits, double wanted, double v1, const Box& box,
+           int& places) noexcept;
   bool keeps_to(const CourseView& view, const RateLimits& limits, double t, int& places) noexcept;
   MotionState motion(double t) const noexcept;
   double next_place(double t, double step) const noexcept;
 
-  Vector direction_{};     ///< of the axes, where law time goes forwards
-  double origin_ = 0.0;    ///< place along it where the ramp begins
+  From from_;
+  Here here_;
   double forwards_ = 1.0;  ///< -1: backwards
   Profile profile_;        ///< of the speed, seen in the direction of the motion
   Interval interval_;
-  Interval::Along along_{};
-  double in_ = 0.0;         ///< law time since the interval's begin
-  double t_ = 0.0;          ///< the last place
-  std::int64_t first_ = 1;  ///< knot that ends the interval where it begins
-  double first_in_ = 0.0;   ///< and the law time in there
-  double turns_ = 0.0;      ///< when the speed goes the other way, s; 0: it does not
-  double fastest_ = 0.0;    ///< speed on the way
+  double begin_ = 0.0,
+         whole_ = 0.0;  ///< the interval's place along the path, from where the ramp begins, and length
+  double in_ = 0.0, way_ = 0.0;  ///< law time and way since the interval's begin
+  double first_way_ = 0.0;       ///< from the interval's begin to where the ramp begins
+  double t_ = 0.0;               ///< the last place
+  double turns_ = 0.0;           ///< when the speed goes the other way, s; 0: it does not
+  double fastest_ = 0.0;         ///< speed on the way
   RateState state_;
   bool ends_even_ = false;
+  bool speeds_up_ = false;  ///< the law, at the last place
 };
 
 /// The course at rest at a law time; `near`: number of a knot near it. real-time safe.
@@ -251,7 +270,7 @@ class RateMotion {
   /// its start backwards, or to where it rests if it is broken.
   bool step(const CourseView& view, double target, double period) noexcept;
   CoursePoint point(const CourseView& view) const noexcept;
-  /// -1 to 1, or above 1 where that is wanted; on a ramp up to StraightRamp::kAbove beyond.
+  /// -1 to 1, or above 1 where that is wanted; on a ramp up to PathRamp::kAbove beyond.
   double rate() const noexcept { return rate_; }
   const LawTime& time() const noexcept { return time_; }
   std::int64_t knot() const noexcept { return knot_; }
@@ -274,6 +293,7 @@ class RateMotion {
   void advance_on_ramp(const CourseView& view, double period) noexcept;
   void start(const RateChange& change) noexcept;
   bool ramp(const CourseView& view, double target, double period) noexcept;
+  bool slows_down(const CourseView& view) const noexcept;
   bool ramp_ahead(const CourseView& view, const StopHint& hint) noexcept;
   void forget_ramps(double target) noexcept;
   bool start_ramp_ahead(const CourseView& view, double period) noexcept;
@@ -299,13 +319,15 @@ class RateMotion {
   std::int64_t knot_ = 1;
   double rate_ = 1.0, slope_ = 0.0;
   RateChange change_;
-  StraightRamp ramp_;          ///< goes before the change
+  PathRamp ramp_;              ///< goes before the change
   bool ramp_tried_ = false;    ///< in the cycle before, in vain
   std::int64_t ramp_at_ = -1;  ///< the ramp begins in this knot
   struct Ahead {
     int cycles = 0, looked = 0, behind = 0;  ///< knots that were looked at, and those behind the slowest one
     std::int64_t knot = 1;
     double slowest = 0.0;
+    bool slowing = false;  ///< the law, where the search began
+    bool goes_on = false;  ///< in the next cycle
   };
   Ahead ahead_;        ///< the search for a knot where it may begin
   double into_ = 0.0;  ///< the ramp, or the change, s

@@ -82,7 +82,7 @@ bool RateMotion::stop_in_time(const CourseView& view, double target, double peri
   settled_ = ramp_at_ >= 0;
   if (!settled_ && target >= 0.0 && target < rate_) {
     const StopHint hint = view.stop_near(knot_);
-    if (stop_at(view, hint, period)) return true;
+    if (!ahead_.goes_on && stop_at(view, hint, period)) return true;
     settled_ = until(view, hint) > 0.0;
   }
   if (view.end() >= 0 || !stop_at(view, view.guard(), period)) return false;

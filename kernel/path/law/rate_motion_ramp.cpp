@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -77,26 +79,32 @@ bool RateMotion::follow_ramp(const CourseView& view, double target, double perio
   return false;
 }
 
-/// The early way, where the path is straight. By a little less than the limits also where it is hardly bent.
+/// The early way: as fast as the axes can, and where that is too fast, by less.
 bool RateMotion::ramp(const CourseView& view, double target, double period) noexcept {
-  constexpr double kShares[] = {0.9995, 0.99, 0.95, 0.8, 0.6, 0.4}, kLittle = 0.1;
+  constexpr double kLittle = 0.1;
+  constexpr std::size_t kWhileSlowing = 3;  // plans: by less it would be slower than the law
   int places = std::exchange(left_, 0);
   // A ramp that is on its way, or about to begin, goes on where the try is in vain.
-  std::optional<StraightRamp> now;
+  std::optional<PathRamp> now;
   if (on_ramp_ || ramp_at_ >= 0) now = ramp_;
   const RateChange then = change_;
   bool fits = false;
-  for (const double share : kShares) {
+  // A stop that is known and ends sooner is better.
+  const StopHint hint = target == 0.0 && rate_ > 0.0 ? view.stop_near(knot_) : StopHint{};
+  const double in = until(view, hint);
+  const double known = in < 0.0 ? std::numeric_limits<double>::infinity() : in + hint.seconds / rate_;
+  const bool begins = ramp_.begin(view, limits_, {time_, knot_, rate_, slope_});
+  const std::size_t plans = target == 0.0 && slows_down(view) ? kWhileSlowing : PathRamp::kPlans;
+  for (std::size_t n = 0; begins && n < plans && !fits; ++n) {
     left_ -= kTry;
-    if (places <= 0 || !ramp_.plan(view, limits_, {time_, knot_, rate_, slope_}, target, share, places))
-      break;
+    if (places <= 0 || !ramp_.plan(view, limits_, target, n, places)) break;
     const bool rests = ramp_.to_rest(), even = ramp_.ends_even();
     if (!rests && !even && std::abs(target - rate_) < kLittle) break;
+    if (rests && ramp_.seconds() > known) break;
     if (ramp_.verify(view, limits_, places) != Fit::fits) continue;
     change_ = {rate_, slope_, rests ? 0.0 : target, ramp_.seconds(), 3};
     fits = rests || (even ? reaches_stop(view, ramp_.time(), target, period)
                           : follow_ramp(view, target, period, places));
-    if (fits) break;
   }
   left_ += places;
   if (!fits || !ramp_.rewind(view, limits_)) {
@@ -109,12 +117,23 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
   return true;
 }
 
+/// The law slows down here.
+bool RateMotion::slows_down(const CourseView& view) const noexcept {
+  constexpr double kSlowing = -0.5;  // 1/s
+  Interval interval;
+  if (!interval.take(view, knot_, limits_)) return false;
+  const Interval::Pace law = interval.pace(time_.since(interval.begin()), limits_.axes);
+  return law.a * rate_ < kSlowing * law.v;
+}
+
 /// The law slows down, before a corner, and leaves no room to slow down any sooner: the stop that begins in
 /// a knot ahead, where there is room again. For a hold, in its first cycles.
 bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexcept {
-  constexpr double kShare = 0.95, kSlower = 0.9;
+  constexpr double kSlower = 0.9;
+  constexpr std::size_t kPlan = 2;
   constexpr int kMostKnots = 150, kNear = 3, kBehind = 24, kPlaces = 450, kCycles = 6;
   if (ramp_at_ >= 0) return true;
+  ahead_.goes_on = false;
   if (active_ || !(rate_ > 0.0 && rate_ <= 1.0) || ahead_.cycles >= kCycles) return false;
   const double speed_now = std::abs(point(view).speed) / rate_;
   if (ahead_.cycles++ == 0) {
@@ -123,13 +142,13 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
       ahead_.cycles = kCycles;
       return false;
     }
-    ahead_ = {1, 0, 0, knot_, speed_now};
+    ahead_ = {1, 0, 0, knot_, speed_now, slows_down(view)};
   }
   const double least = hint.knot < 0 ? std::numeric_limits<double>::infinity()
                                      : std::max(0.0, until(view, hint)) + hint.seconds / rate_;
   for (; ahead_.looked < kMostKnots; ++ahead_.looked, ahead_.knot = next_of(view, ahead_.knot)) {
     // The next cycle goes on before a corner; elsewhere there are other ways to stop.
-    if (left_ < kPlaces) return ahead_.slowest < kSlower * speed_now;
+    if (left_ < kPlaces) return ahead_.goes_on = ahead_.slowest < kSlower * speed_now || ahead_.slowing;
     Interval interval;
     --left_;
     if (!interval.take(view, ahead_.knot, limits_)) break;
@@ -143,11 +162,12 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
     const LawTime at = view.knot(ahead_.knot)->t;
     int places = kPlaces;
     left_ -= places;
-    const bool fits = at.since(time_) >= 0.0 &&
-                      ramp_.plan(view, limits_, {at, ahead_.knot, rate_, 0.0}, 0.0, kShare, places) &&
+    const bool fits = at.since(time_) >= 0.0 && ramp_.begin(view, limits_, {at, ahead_.knot, rate_, 0.0}) &&
+                      ramp_.plan(view, limits_, 0.0, kPlan, places) &&
                       at.since(time_) / rate_ + ramp_.seconds() < least &&
                       ramp_.verify(view, limits_, places) == Fit::fits;
     left_ += places;
+    if (getenv("DBG")) printf(" ahead knot %ld looked %d fits %d spent %d left %d seconds %.3f in %.3f least %.3f\n", (long)ahead_.knot, ahead_.looked, fits, kPlaces-places, left_, ramp_.seconds(), at.since(time_), least);
     if (!fits) continue;
     if (!ramp_.rewind(view, limits_)) break;
     ramp_at_ = ahead_.knot;
