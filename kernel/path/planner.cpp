@@ -103,7 +103,7 @@ struct Planner::Impl final : ContourSink {
   }
   void end_run() {
     run = Run::none;
-    fallen = false;
+    alone = 0;
     on_course.clear();
   }
   bool suits_course(const Element& e) const;
@@ -114,6 +114,8 @@ struct Planner::Impl final : ContourSink {
   void decide();
   void pass_on(const Element& e, const Piece& piece);
   void put_on_course(const Element& e, const Piece& piece);
+  void begin_course(const Vector& from);
+  void drive_alone(const std::vector<Element>& parts, std::deque<OnCourse>& behind);
   bool fall_back();
 
   Config config;
@@ -131,8 +133,8 @@ struct Planner::Impl final : ContourSink {
   Vector waiting_from{};
   std::deque<OnCourse> on_course;  ///< elements that the course may not come to the end of
   double course_length = 0.0;
-  bool fallen = false;  ///< Run::spans is what is left of a course: it ends where the course would have ended
-  Waiting before;       ///< the last element that moves
+  std::size_t alone = 0;  ///< elements driven alone behind the place where the course broke last
+  Waiting before;         ///< the last element that moves
   std::optional<Tag> unasked_rest;
 };
 
@@ -163,7 +165,7 @@ Planner::Impl::Run Planner::Impl::suitable() const {
 }
 
 bool Planner::Impl::rests_before(const Element& e, const Piece& piece) const {
-  if (run == Run::course || fallen || run == Run::undecided) {
+  if (run == Run::course || run == Run::undecided) {
     if (run != Run::undecided && !(suits_course(e) && same_feed(e))) return true;
     return rests_between(config, before.element.transition, before.piece, e, piece);
   }
@@ -182,25 +184,28 @@ void Planner::Impl::decide() {
     contour.restart(waiting_from);
     law.begin_at(publisher.next().piece, publisher.planned());
   } else {
-    gather.restart(waiting_from);
-    on_course.clear();
-    course_length = 0.0;
+    begin_course(waiting_from);
   }
   for (const Waiting& w : waiting) pass_on(w.element, w.piece);
   waiting.clear();
 }
 
+void Planner::Impl::begin_course(const Vector& from) {
+  gather.restart(from);
+  on_course.clear();
+  course_length = 0.0;
+}
+
 void Planner::Impl::pass_on(const Element& e, const Piece& piece) {
-  if (run == Run::course) {
-    put_on_course(e, piece);
-    gather.add(e);
-    if (gather.open()) return;
-    if (!fall_back()) return end_run();
-  } else {
+  if (run == Run::spans) {
     contour.add(e);
+    return;
   }
-  if (!fallen || goes_on(e)) return;
-  contour.finish();
+  put_on_course(e, piece);
+  gather.add(e);
+  if (gather.open()) return;
+  while (fall_back()) {
+  }
   end_run();
 }
 
@@ -212,25 +217,46 @@ void Planner::Impl::put_on_course(const Element& e, const Piece& piece) {
     on_course.pop_front();
 }
 
-/// No law was found for what comes next: behind the place where the course rests the run goes on by spans.
+/// From rest to rest, exactly on the path; with what behind it moves nothing and decides how it ends.
+void Planner::Impl::drive_alone(const std::vector<Element>& parts, std::deque<OnCourse>& behind) {
+  for (const Element& part : parts) {
+    contour.add(part);
+    if (&part == &parts.back())
+      for (; !behind.empty() && behind.front().what.piece.length == 0.0; behind.pop_front())
+        contour.add(behind.front().what.element);
+    contour.finish();
+  }
+}
+
+/// No law was found for what comes next. Behind the place where the course rests some elements are driven
+/// alone, and what is behind them is a course again; one that breaks where it begins has twice as many alone
+/// before the next one. Gives whether there was such a place.
 bool Planner::Impl::fall_back() {
   if (run != Run::course || !course->broken()) return false;
   const CourseLaw::Rest rest = course->rest_place();
   while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= rest.place)
     on_course.pop_front();
-  const Waiting first = on_course.front().what;
-  const double s = std::clamp(rest.place - on_course.front().begin, 0.0, first.piece.length);
-  on_course.pop_front();
-  const Vector from = rest.x ? *rest.x : path::position(first.piece, s, config.axis_count);
-  unasked_rest = first.element.tag;
+  std::deque<OnCourse> left = std::exchange(on_course, {});
+  const Waiting first = left.front().what;
+  const double s = std::clamp(rest.place - left.front().begin, 0.0, first.piece.length);
+  if (rest.x || alone == 0) unasked_rest = first.element.tag;
+  alone = rest.x ? 1 : std::max<std::size_t>(1, 2 * alone);
   course->restart();
-  gather.restart(at);
-  contour.restart(from);
+  contour.restart(rest.x ? *rest.x : path::position(first.piece, s, config.axis_count));
   law.begin_at(publisher.next().piece, publisher.planned());
-  for (const Element& e : rest_of(first.element, first.piece, s, config.axis_count)) contour.add(e);
-  for (const OnCourse& next : std::exchange(on_course, {})) contour.add(next.what.element);
-  run = Run::spans;
-  fallen = true;
+  Vector from{};
+  for (std::size_t n = 0; n < alone && !left.empty(); ++n) {
+    const Element e = left.front().what.element;
+    left.pop_front();
+    drive_alone(n == 0 ? rest_of(e, first.piece, s, config.axis_count) : std::vector<Element>{e}, left);
+    from = e.to;
+  }
+  begin_course(from);
+  if (left.empty()) end_run();
+  for (const OnCourse& next : left) {
+    put_on_course(next.what.element, next.what.piece);
+    gather.add(next.what.element);
+  }
   return true;
 }
 
@@ -263,9 +289,11 @@ bool Planner::Impl::add(const Element& e) {
 
 void Planner::Impl::finish() {
   if (run == Run::undecided) decide();
-  if (run == Run::course) gather.finish();
-  fall_back();
   if (run == Run::spans) contour.finish();
+  while (run == Run::course) {
+    gather.finish();
+    if (!fall_back()) break;
+  }
   end_run();
 }
 

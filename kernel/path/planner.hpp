@@ -33,8 +33,8 @@ class Planner {
   Flaw last_flaw() const;
   /// The element inside of which the path comes to rest although its program does not ask for it, the newest
   /// one since the last call: no law of a course inside of the limits was found for what comes next, and
-  /// behind that place the run is driven by spans. May be known long after the element was added, and is
-  /// known for certain behind rest().
+  /// some elements behind that place are driven from rest to rest. May be known long after the element was
+  /// added, and is known for certain behind rest().
   std::optional<Tag> take_unasked_rest();
 
   /// A mark in the end point of the elements before, which the motion passes without a rest: the follower

@@ -33,7 +33,7 @@ RandomProgram without_a_law() {
   return p;
 }
 
-TEST(BrokenCourse, without_a_law_for_what_comes_next_rests_says_where_and_goes_on_by_spans) {
+TEST(BrokenCourse, without_a_law_for_what_comes_next_rests_says_where_and_goes_on) {
   RandomProgram p = without_a_law();
   for (int k = 0; k < 3; ++k) p.elements[600 + static_cast<std::size_t>(k)].feed = 250;
   p.elements.insert(p.elements.begin() + 800, p.elements[799]);  // moves nothing
@@ -84,7 +84,7 @@ TEST(BrokenCourse, without_a_law_comes_to_its_rest_however_it_is_held_before) {
   EXPECT_GT(held, 1000);
 }
 
-TEST(BrokenCourse, without_a_law_from_its_start_is_driven_by_spans_from_there) {
+TEST(BrokenCourse, without_a_law_from_its_start_is_driven_from_rest_to_rest_and_then_as_a_course) {
   RandomProgram p = without_a_law();
   p.elements.erase(p.elements.begin(), p.elements.begin() + 600);
   p.start = {180, 0, 0};
@@ -104,6 +104,60 @@ TEST(BrokenCourse, without_a_law_from_its_start_is_driven_by_spans_from_there) {
     trip.ended = k > 10 && trip.samples.back().state == FollowerState::idle;
   }
   EXPECT_EQ(verdict(trip, p), "");
+}
+
+/// What of the trip is slower than the feed or at rest from the place `x` on, s.
+double slow_behind(const Trip& trip, double x, double feed) {
+  double seconds = 0.0;
+  for (const Sample& s : trip.samples)
+    if (s.position[0] > x && s.feed < 0.9 * feed) seconds += 0.001;
+  return seconds;
+}
+
+TEST(BrokenCourse, is_a_course_again_behind_the_elements_that_find_no_law) {
+  RandomProgram p = without_a_law();
+  p.config.reserve = -1.3;  // it is found here and there
+  p.elements.resize(680);   // a fifth of the circle, in blocks
+  const Vector from = p.elements.back().to;
+  for (int k = 1; k <= 900; ++k)
+    p.elements.push_back(line_to(from[0] + 0.3 * k, from[1] + 0.1 * std::sin(k * 0.01), 0, 60));
+  DrivenPath m(p.config);
+  for (const Element& e : p.elements) {
+    ASSERT_TRUE(m.planner.add(e));
+    m.planner.work();
+  }
+  m.planner.finish();
+  ASSERT_TRUE(m.planner.take_unasked_rest().has_value());
+  m.trip.ended = m.until(FollowerState::idle);
+  EXPECT_EQ(verdict(m.trip, p), "");
+  double least = 1e9;
+  for (const Sample& s : m.trip.samples)
+    if (s.position[0] > 170 && s.position[0] < 182) least = std::min(least, s.feed);
+  EXPECT_EQ(least, 0.0) << "it rests on the circle";
+  EXPECT_LT(slow_behind(m.trip, from[0] + 60, 60), 0.5) << "all but the way down to the end";
+}
+
+TEST(BrokenCourse, that_finds_no_law_from_its_start_on_rests_behind_each_element_and_is_exactly_on_its_path) {
+  constexpr int kBlocks = 300;
+  RandomProgram p = without_a_law();
+  p.config.reserve = -4.0;
+  p.elements.clear();
+  const auto y = [](int k) { return 0.5 * std::sin(0.05 * k); };
+  for (int k = 1; k <= kBlocks; ++k) p.elements.push_back(line_to(0.3 * k, y(k), 0, 60));
+  DrivenPath m(p.config);
+  for (const Element& e : p.elements) ASSERT_TRUE(m.planner.add(e));
+  m.planner.finish();
+  ASSERT_TRUE(m.planner.take_unasked_rest().has_value());
+  ASSERT_TRUE(m.until(FollowerState::idle));
+  int exact = 0, rests = 0;
+  for (const Sample& s : m.trip.samples) {
+    const int k = std::min(static_cast<int>(s.position[0] / 0.3), kBlocks - 1);
+    const double z = s.position[0] / 0.3 - k;
+    exact += std::abs(s.position[1] - (y(k) + z * (y(k + 1) - y(k)))) < 1e-9 ? 1 : 0;
+    rests += s.feed == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(rests, kBlocks / 2);
+  EXPECT_GT(exact, 9 * static_cast<int>(m.trip.samples.size()) / 10);
 }
 
 /// Hands a course on up to its 60th stop, and says that there is no law behind it. Some knots are known
