@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints shape and law over one clock beside the law of spans, work by work: times, aims, and what planning
-// costs. With the name of a file it also draws the times as a picture (SVG).
+// Prints shape and law over one clock, work by work: times, aims, and what planning costs. With the name of a
+// file it also draws the times as a picture (SVG).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +12,6 @@
 
 #include "bench/path/works.hpp"
 #include "kernel/path/law/pipeline.hpp"
-#include "kernel/path/planner.hpp"
 #include "kernel/path/shape/gather.hpp"
 
 namespace {
@@ -119,12 +118,12 @@ void Reader::move(const path::Move& move) {
 /// Times of one work, s.
 struct Times {
   std::string name;
-  double aim, course, spans, optimum;
+  double aim, course, optimum;
 };
 
-constexpr double kLeft = 240, kWidth = 560, kRow = 34, kMost = 2.0;  // of a picture
+constexpr double kLeft = 240, kWidth = 560, kRow = 22, kMost = 1.3;  // of a picture
 
-/// Bars from 1, the optimum, on: how much longer the course and the law of spans take; a stroke at the aim.
+/// Bars from 1, the optimum, on: how much longer the course takes; a stroke at the aim.
 void draw(const std::string& file, const std::vector<Times>& works) {
   const auto place = [](double share) {
     return kLeft + kWidth * (std::min(share, kMost) - 0.9) / (kMost - 0.9);
@@ -135,36 +134,25 @@ void draw(const std::string& file, const std::vector<Times>& works) {
       << "\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#333\">\n<rect width=\"100%\" "
          "height=\"100%\" "
          "fill=\"white\"/>\n<text x=\""
-      << kLeft
-      << "\" y=\"14\">time over the best that is found: course (blue), law of spans (grey), aim "
-         "(red)</text>\n";
+      << kLeft << "\" y=\"14\">time over the best that is found: course (blue), aim (red)</text>\n";
   for (double share = 1.0; share <= kMost + 1e-9; share += 0.1)
     out << "<path d=\"M" << place(share) << " 26V" << height - 8 << "\" stroke=\"#ddd\"/><text x=\""
         << place(share) << "\" y=\"24\" text-anchor=\"middle\">" << std::round(share * 10) / 10
         << "</text>\n";
   double y = 32;
   for (const Times& w : works) {
-    const auto bar = [&](double seconds, double top, const char* colour) {
-      const double share = seconds / w.optimum;
-      out << "<rect x=\"" << place(0.9) << "\" y=\"" << top << "\" width=\"" << place(share) - place(0.9)
-          << "\" height=\"11\" fill=\"" << colour << "\"/><text x=\"" << place(share) + 4 << "\" y=\""
-          << top + 10 << "\">" << seconds << " s</text>\n";
-    };
-    out << "<text x=\"" << kLeft - 8 << "\" y=\"" << y + 16 << "\" text-anchor=\"end\">" << w.name
-        << "</text>\n";
-    bar(w.course, y, "#1f6fb4");
-    bar(w.spans, y + 12, "#bbb");
-    out << "<path d=\"M" << place(w.aim / w.optimum) << ' ' << y - 2
-        << "v27\" stroke=\"#c22\" stroke-width=\"2\"/>\n";
+    const double share = w.course / w.optimum;
+    out << "<text x=\"" << kLeft - 8 << "\" y=\"" << y + 10 << "\" text-anchor=\"end\">" << w.name
+        << "</text>\n<rect x=\"" << place(0.9) << "\" y=\"" << y << "\" width=\"" << place(share) - place(0.9)
+        << "\" height=\"11\" fill=\"#1f6fb4\"/><text x=\"" << place(share) + 4 << "\" y=\"" << y + 10 << "\">"
+        << w.course << " s</text>\n<path d=\"M" << place(w.aim / w.optimum) << ' ' << y - 2
+        << "v15\" stroke=\"#c22\" stroke-width=\"2\"/>\n";
     y += kRow;
   }
   out << "</svg>\n";
 }
 
 Times row(const Work& work) {
-  path::Config spans = work.config;
-  spans.law = path::Law::spans;
-  const double today = path::estimate(spans, {}, work.program).seconds;
   Reader reader(work.config);
   path::Gather gather(work.config, reader);
   gather.restart({});
@@ -179,21 +167,21 @@ Times row(const Work& work) {
   const path::Pipeline::Counts& counts = reader.counts();
   const double seconds = reader.seconds(), aim = work.aim > 0.0 ? work.aim : 1.04 * work.optimum;
   const auto blocks = static_cast<double>(work.program.size()), knots = static_cast<double>(counts.knots);
-  std::printf("%-30s %8.3f %8.3f%s %8.3f %8.3f  %8.4f %9.0f %7.1f %8.0f  %lld / %lld / %lld\n",
-              work.name.c_str(), aim, seconds, aim > 0.0 && seconds > aim ? "!" : " ", today, work.optimum,
-              reader.reached(), blocks / cost, cost / std::max(1.0, knots) * 1e6, seconds / cost,
+  std::printf("%-30s %8.3f %8.3f%s %8.3f  %8.4f %9.0f %7.1f %8.0f  %lld / %lld / %lld\n", work.name.c_str(),
+              aim, seconds, aim > 0.0 && seconds > aim ? "!" : " ", work.optimum, reader.reached(),
+              blocks / cost, cost / std::max(1.0, knots) * 1e6, seconds / cost,
               static_cast<long long>(counts.released), static_cast<long long>(counts.outside),
               static_cast<long long>(counts.failed));
   std::fflush(stdout);
-  return {work.name, aim, seconds, today, work.optimum};
+  return {work.name, aim, seconds, work.optimum};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const double full = 2.0 * std::numbers::pi;
-  std::printf("%-30s %8s %8s  %8s %8s  %8s %9s %7s %8s  %s\n", "seconds", "aim", "course", "spans", "optimum",
-              "limits", "blocks/s", "us/knot", "x real", "released / outside / no law");
+  std::printf("%-30s %8s %8s  %8s  %8s %9s %7s %8s  %s\n", "seconds", "aim", "course", "optimum", "limits",
+              "blocks/s", "us/knot", "x real", "released / outside / no law");
   std::vector<Times> times;
   times.push_back(row({"mill: circle R20, one arc", mill(), circle(20, 6000), 1.47, 1.461}));
   times.push_back(

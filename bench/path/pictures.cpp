@@ -141,7 +141,6 @@ void tolerance(const std::string& folder) {
   std::vector<Curve> paths{{"", {{9.7, 0}, {10, 0}, {10, 0.3}}}}, speeds;
   for (const double d : {0.01, 0.05, 0.2}) {
     path::Config config = mill();
-    config.law = path::Law::course;
     const auto samples = driven(config, {line(10, 0, 50, d), line(10, 10, 50, d)});
     Curve c{number(d) + " mm", {}};
     for (const path::Sample& s : samples) c.points.push_back({s.position[0], s.position[1]});

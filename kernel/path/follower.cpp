@@ -11,16 +11,10 @@ namespace {
 
 constexpr int kEntriesPerCycle = 256;   // taken over from the track
 constexpr int kMarkersPerCycle = 16;    // passed at rest
-constexpr int kSpansPerCycle = 16;      // the planner lets no more than four be passed
-constexpr int kPiecesPerCycle = 64;     // and no more than fifty of these
+constexpr int kPiecesPerCycle = 64;     // passed
 constexpr int kPiecesLocated = 512;     // of a course, where more are passed the place shown comes late
 constexpr double kSlowestShare = 1e-6;  // of a feed; slower is rest
 constexpr double kSamePlace = 1e-9;     // mm
-
-/// On a blend the element before is in motion up to its middle.
-bool early(const Piece& piece, double s) {
-  return piece.shape == Piece::Shape::blend && piece.tag_before != piece.tag && s < 0.5 * piece.length;
-}
 
 }  // namespace
 
@@ -28,7 +22,6 @@ Follower::Follower(const Config& config, Track& track)
     : config_(config),
       track_(track),
       window_(track),
-      motion_(config),
       course_(track),
       rate_({config.axis_count, config.limits, config.transformation}),
       master_(config) {}
@@ -43,13 +36,13 @@ void Follower::set_override(double ratio) noexcept {
 void Follower::set_spindle(double revolutions) noexcept {
   if (revolutions == spindle_) return;
   spindle_ = revolutions;
-  for (const int n : {0, 1})
-    if (const Span* span = window_.span(n); span != nullptr && follows_spindle(span->terms)) motion_.renew();
+  const Span* span = window_.span(0);
+  if (span != nullptr && span->terms.feed.per_turn > 0.0) motion_.renew();
 }
 
 bool Follower::spindle_stands() const noexcept {
   const Span* span = window_.span(0);
-  return (span != nullptr ? spindle_share(span->terms, spindle_) : course_share()) < kSlowestShare;
+  return (span != nullptr ? spindle_share(span->terms.feed, spindle_) : course_share()) < kSlowestShare;
 }
 
 void Follower::release_event() noexcept {
@@ -84,13 +77,11 @@ bool Follower::set_position(const Vector& at) noexcept {
 void Follower::take_entries(std::uint64_t visible) noexcept {
   for (int n = 0; n < kEntriesPerCycle && taken_ < visible && !window_.full(); ++n) {
     const Entry& entry = track_.entries[taken_++];
-    if (entry.kind == Entry::Kind::revise) {
-      if (window_.revise(entry.span) && in_span_) motion_.renew();
-    } else if (entry.kind == Entry::Kind::extend) {
+    if (entry.kind == Entry::Kind::extend) {
       if (!window_.extend(entry)) drop_course(entry);
-    } else if (!dropping_ || entry.kind == Entry::Kind::restart || window_.anything_staged()) {
+    } else if (!dropping_ || entry.kind == Entry::Kind::restart || !window_.empty()) {
       // While dropping, the window holds at most the restart: what comes behind it belongs to the new path.
-      window_.stage(entry);
+      window_.append(entry);
     } else if (entry.kind == Entry::Kind::span) {
       drop_span(entry.span);
     }
@@ -142,13 +133,13 @@ void Follower::start() noexcept {
   const Span* span = window_.span(0);
   const bool by_angle = span != nullptr && span->terms.feed.lock.kind != Lock::Kind::none;
   if (by_angle) {  // whether its spindle stands is its own affair
-    if (span->final && begin_by_master()) enter();
+    if (begin_by_master()) enter();
     return;
   }
   if (spindle_stands()) return;
-  if (span != nullptr && span->final) {
+  if (span != nullptr) {
     enter();
-    motion_.begin(window_, wish());
+    motion_.begin(*span, wish());
   } else if (const Entry* course = window_.course(); course != nullptr) {
     begin_course(*course);
   }
@@ -162,12 +153,7 @@ void Follower::enter() noexcept {
 void Follower::leave() noexcept {
   const Span span = front();
   window_.pop();
-  if (!span.stop && window_.span(0) != nullptr) {
-    enter();
-    motion_.pass(span.length, window_, wish());
-  } else {
-    arrive(track_.pieces[span.first_piece + span.pieces - 1], span.stop && span.confirm);
-  }
+  arrive(track_.pieces[span.first_piece + span.pieces - 1], span.confirm);
   track_.pieces.free_below(span.first_piece + span.pieces);
 }
 
@@ -190,7 +176,6 @@ void Follower::drop_span(const Span& span) noexcept {
 }
 
 void Follower::drop() noexcept {
-  window_.release();
   while (!window_.empty() && window_.front().kind != Entry::Kind::restart) {
     if (window_.span(0) != nullptr) drop_span(front());
     if (window_.course() != nullptr) drop_course(*window_.course());
@@ -199,11 +184,6 @@ void Follower::drop() noexcept {
   in_span_ = on_course_ = by_master_ = wait_stop_ = wait_event_ = open_ = stopping_ = false;
   dropping_ = true;
   motion_.rest();
-}
-
-void Follower::advance() noexcept {
-  double left = config_.period_s;
-  for (int n = 0; n < kSpansPerCycle && in_span_ && motion_.advance(left, window_); ++n) leave();
 }
 
 void Follower::locate(double s) noexcept {
@@ -216,18 +196,12 @@ void Follower::locate(double s) noexcept {
 
 /// Length of the path from the last mark to the place `s` in the piece in motion; the pieces that one cycle
 /// passes are still on the track behind it.
-double Follower::behind_mark(std::uint32_t marks, double s, bool is_early) const noexcept {
+double Follower::behind_mark(std::uint32_t marks, double s) const noexcept {
   double length = s;
   std::uint64_t n = piece_;
-  const Piece* piece = &track_.pieces[n];
   const std::uint64_t oldest = std::max(begun_, track_.pieces.oldest());
-  for (int k = 0; k < kPiecesPerCycle && n > oldest; ++k) {
-    if (piece->tag_before.marks != marks && !is_early) return length - 0.5 * piece->length;
-    is_early = false;
-    if (track_.pieces[n - 1].tag.marks != marks) return length;
-    piece = &track_.pieces[--n];
-    length += piece->length;
-  }
+  for (int k = 0; k < kPiecesPerCycle && n > oldest && track_.pieces[n - 1].tag.marks == marks; ++k)
+    length += track_.pieces[--n].length;
   return length;
 }
 
@@ -296,13 +270,12 @@ void Follower::place_on_axes(double s, const MotionState& state) noexcept {
 /// What the piece in motion says, `s` behind its begin at speed v.
 void Follower::show_piece(double s, double v) noexcept {
   const Piece& piece = track_.pieces[piece_];
-  const bool before = early(piece, s);
-  sample_.tag = before ? piece.tag_before : piece.tag;
+  sample_.tag = piece.tag;
   if (sample_.tag.marks != marks_) {
     const double cycle = std::max(v * config_.period_s, kSamePlace);
-    pass_marks(sample_.tag.marks, behind_mark(sample_.tag.marks, s, before) / cycle);
+    pass_marks(sample_.tag.marks, behind_mark(sample_.tag.marks, s) / cycle);
   }
-  sample_.distance_to_go = before ? 0.5 * piece.length - s : piece.rest + piece.length - s;
+  sample_.distance_to_go = piece.rest + piece.length - s;
   if (shown_ == piece_) return;
   shown_ = piece_;
   sample_.rapid = piece.rapid;
@@ -340,10 +313,8 @@ Sample Follower::step(std::uint64_t visible) noexcept {
     follow_master();
     if (!in_span_) pass_markers();
   } else if (in_span_) {
-    const Wish wanted = wish();
-    motion_.obey(window_, wanted);
-    if (!front().final && !wanted.rest) ++starved_;
-    advance();
+    motion_.obey(front(), wish());
+    if (motion_.advance(config_.period_s)) leave();
     if (!in_span_) pass_markers();
   } else if (open_ && !wait_stop_ && !wait_event_ && !wants_rest()) {
     ++starved_;

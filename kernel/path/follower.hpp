@@ -122,7 +122,6 @@ class Follower {
   void free_course() noexcept;
   void enter() noexcept;
   void leave() noexcept;
-  void advance() noexcept;
   void arrive(const Piece& last, bool waits) noexcept;
   bool rest_asked() const noexcept { return hold_ || stopping_ || override_ <= 0.0; }
   bool wants_rest() const noexcept { return rest_asked() || spindle_stands(); }
@@ -145,7 +144,7 @@ class Follower {
   void show_feed(const Vector& velocity) noexcept;
   void show_piece(double s, double v) noexcept;
   void pass_marks(std::uint32_t marks, double beyond) noexcept;
-  double behind_mark(std::uint32_t marks, double s, bool early) const noexcept;
+  double behind_mark(std::uint32_t marks, double s) const noexcept;
   FollowerState report() const noexcept;
   Sample sample() noexcept;
   const Span& front() const noexcept { return *window_.span(0); }
@@ -154,7 +153,7 @@ class Follower {
   Track& track_;
   Window window_;
   std::uint64_t taken_ = 0;  ///< entries taken from the track
-  Motion motion_;            ///< through spans
+  Motion motion_;            ///< along a span from rest to rest
   CourseAhead course_;
   RateMotion rate_;           ///< along a course
   MasterMotion master_;       ///< through spans, by the spindle's angle

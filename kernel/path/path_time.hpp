@@ -8,10 +8,10 @@
 
 namespace servogate::path {
 
-/// How long a path takes at override 1. The spans are the planner's, the time of each is the law's (Timing);
-/// of a course its speeds are foretold (SpeedForecast), and so is its time: about. No cycle is stepped, so
-/// the cost goes with the path and not with the time it takes. Waiting for the axes to be in position is not
-/// counted. Not real-time safe.
+/// How long a path takes at override 1. An element from rest to rest takes the law's time; of a course the
+/// speeds are foretold (SpeedForecast), and so is its time: about. Threads and taps take the speed that their
+/// lead is planned for. No cycle is stepped, so the cost goes with the path and not with the time it takes.
+/// Waiting for the axes to be in position is not counted. Not real-time safe.
 class PathTime final : private MomentSink {
  public:
   /// `look`: takes the path moment by moment, in its order.
@@ -30,27 +30,20 @@ class PathTime final : private MomentSink {
  private:
   void put(const Moment& moment) override;
   void take_entries();
-  void take_pieces();
-  void time_spans();
-  void look_along(const Span& span);
+  void take(const Entry& entry);
+  void look_along(const Piece& piece, const Profile& way);
   Moment moment(const Piece& piece, const MotionState& state, double jerk) const;
   void look_along_course();
-  std::uint64_t command_of(const Span& span) const;
   double whole_cycles(double seconds) const;
 
   Config config_;
   MomentSink* look_;
   Track track_;
   Planner planner_;
-  std::deque<Span> spans_;  ///< published, not yet timed
-  std::deque<Piece> pieces_;
-  std::uint64_t first_piece_ = 0;  ///< number of the first of them
-  std::deque<Moment> moments_;     ///< of courses, not yet shown
-  std::uint64_t taken_ = 0;        ///< entries of the track
-  bool on_course_ = false;         ///< the last entry is of a course that goes on
-  bool course_begun_ = false;      ///< its first moment has been shown
-  Timing timing_;
-  double way_ = 0.0;  ///< time since the last rest, s
+  std::deque<Moment> moments_;  ///< of courses, not yet shown
+  std::uint64_t taken_ = 0;     ///< entries of the track
+  bool on_course_ = false;      ///< the last entry is of a course that goes on
+  bool course_begun_ = false;   ///< its first moment has been shown
   double seconds_ = 0.0;
 };
 

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <deque>
-#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "kernel/path/law/course_planning.hpp"
 #include "kernel/path/law/forecast.hpp"
 #include "kernel/path/law/planning.hpp"
-#include "kernel/path/shape/contour.hpp"
 #include "kernel/path/shape/gather.hpp"
+#include "kernel/path/shape/thread_chain.hpp"
 #include "kernel/path/track/publisher.hpp"
 
 namespace servogate::path {
@@ -21,7 +21,6 @@ namespace {
 bool needs_its_axes(const Leg& leg, double v, int axes) {
   constexpr double kAcceleration = 0.25, kJerk = 0.1;  // of the limits
   const Piece& p = leg.piece;
-  if (p.shape != Piece::Shape::arc) return false;
   const double turning = v * std::abs(p.omega), a = p.radius * turning * turning;
   for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i) {
     if (leg.axes != 0 ? !moves(leg, i) : i != p.axis1 && i != p.axis2) continue;
@@ -42,20 +41,28 @@ std::vector<Element> rest_of(const Element& e, const Piece& piece, double s, int
   Element back = e, arc = e;
   back.kind = Element::Kind::line;
   back.to = position(piece, s, axes);
-  back.transition.confirm = false;
   arc.sweep_deg *= 1.0 - s / piece.length;
   return {back, arc};
 }
 
+/// An exact stop that asks the follower to wait.
+bool confirms(const Element& e) {
+  return e.transition.confirm && e.transition.continuation == Continuation::exact_stop;
+}
+
+bool suits_course(const Element& e) {
+  return e.kind != Element::Kind::rapid && e.lock.kind == Lock::Kind::none;
+}
+
 }  // namespace
 
-/// Shape, bound, law and track, one behind the other; two laws, chosen from rest to rest.
-struct Planner::Impl final : ContourSink {
+/// Shape, bound, law and track, one behind the other; the law is chosen from rest to rest.
+struct Planner::Impl final : ChainSink {
   Impl(const Config& c, Track& track, MomentSink* forecast)
       : config(c),
         publisher(track),
         law(c, track.pieces.capacity(), publisher),
-        contour(c, *this),
+        chain(c, *this),
         course(law_of_courses(c, forecast)),
         gather(c, *course) {}
   std::unique_ptr<CourseLaw> law_of_courses(const Config& c, MomentSink* forecast) {
@@ -63,8 +70,10 @@ struct Planner::Impl final : ContourSink {
     return std::make_unique<CoursePlanning>(c, publisher);
   }
 
-  void put(const Piece& piece, const Pace& pace) override { law.append(piece, bound(config, piece, pace)); }
-  void rest(bool confirm) override { law.rest(confirm); }
+  void put(const Piece& piece, const Element& element) override {
+    law.append(piece, bound(config, piece, element));
+  }
+  void rest() override { law.rest(false); }
 
   void mark(Entry::Kind kind, std::uint32_t event, const Tag& tag) {
     Entry entry;
@@ -73,7 +82,6 @@ struct Planner::Impl final : ContourSink {
     entry.tag = tag;
     entry.tag.marks = marks;
     entry.at = at;
-    entry.span.number = law.last_number();
     entry.span.first_piece = publisher.next().piece;
     publisher.put(entry);
   }
@@ -81,24 +89,25 @@ struct Planner::Impl final : ContourSink {
   /// What takes the elements since the last rest.
   enum class Run : std::uint8_t {
     none,
-    undecided,  ///< there is one of them, which waits for another
-    spans,      ///< the law from span to span
-    course,     ///< the law over one clock
+    threads,  ///< the chain of threads
+    course,   ///< the law over one clock
   };
-  struct Waiting {
+  struct Laid {
     Element element;
     Piece piece;
   };
   struct OnCourse {
-    Waiting what;
+    Laid what;
     double begin;  ///< path parameter of the course
   };
 
   bool add(const Element& e);
+  void take(const Element& e, const Piece& piece);
+  void rest_behind(const Element& e, const Piece& piece);
   void finish();
   void forget() {
     end_run();
-    waiting.clear();
+    single.reset();
     unasked_rest.reset();
   }
   void end_run() {
@@ -106,107 +115,65 @@ struct Planner::Impl final : ContourSink {
     alone = 0;
     on_course.clear();
   }
-  bool suits_course(const Element& e) const;
-  bool same_feed(const Element& e) const;
-  Run suitable() const;
-  bool rests_before(const Element& e, const Piece& piece) const;
-  void wait(const Element& e, const Piece& piece);
-  void decide();
-  void pass_on(const Element& e, const Piece& piece);
-  void put_on_course(const Element& e, const Piece& piece);
+  bool passes_into(const Laid& before, const Element& e, const Piece& piece) const;
+  void drive(const Laid& what);
+  void drive_alone(const Element& e, const Piece& piece, bool confirm);
+  Vector drive_rest(Vector from, const std::vector<Element>& parts, bool confirm);
   void begin_course(const Vector& from);
-  void drive_alone(const std::vector<Element>& parts, std::deque<OnCourse>& behind);
+  void put_on_course(const Element& e, const Piece& piece);
+  void pass_on(const Element& e, const Piece& piece);
   bool fall_back();
 
   Config config;
   Publisher publisher;
   Planning law;
-  Contour contour;
+  ThreadChain chain;
   std::unique_ptr<CourseLaw> course;
   Gather gather;
   std::uint32_t marks = 0;
   Flaw flaw = Flaw::none;
   Vector at{};  ///< end of the elements added
   Run run = Run::none;
-  bool rests = false;  ///< behind the elements of Run::spans
-  std::vector<Waiting> waiting;
-  Vector waiting_from{};
+  std::optional<Laid> single;      ///< behind a rest; a course, if another one follows without a rest
   std::deque<OnCourse> on_course;  ///< elements that the course may not come to the end of
   double course_length = 0.0;
   std::size_t alone = 0;  ///< elements driven alone behind the place where the course broke last
-  Waiting before;         ///< the last element that moves
   std::optional<Tag> unasked_rest;
 };
 
-bool Planner::Impl::suits_course(const Element& e) const {
-  return config.law != Law::spans && e.kind != Element::Kind::rapid && e.lock.kind == Lock::Kind::none;
+/// No rest lies between the two; a course is driven by the spindle as a whole, or not at all.
+bool Planner::Impl::passes_into(const Laid& before, const Element& e, const Piece& piece) const {
+  return suits_course(before.element) && suits_course(e) && goes_on(before.element) &&
+         (e.revolutions > 0.0) == (before.element.revolutions > 0.0) &&
+         !rests_between(config, before.element.transition, before.piece, e, piece);
 }
 
-/// A course is driven by the spindle as a whole, or not at all: it rests between one feed and the other.
-bool Planner::Impl::same_feed(const Element& e) const {
-  return (e.revolutions > 0.0) == (before.element.revolutions > 0.0);
+void Planner::Impl::drive_alone(const Element& e, const Piece& piece, bool confirm) {
+  law.begin_at(publisher.next().piece, publisher.planned());
+  law.append(piece, bound(config, piece, e));
+  law.rest(confirm);
 }
 
-/// The one place where the law is chosen: two elements and more are a course. A single one needs none, from
-/// rest to rest along a line, and along an arc that needs little of its axes.
-Planner::Impl::Run Planner::Impl::suitable() const {
-  if (!std::all_of(waiting.begin(), waiting.end(), [&](const Waiting& w) { return suits_course(w.element); }))
-    return Run::spans;
-  if (waiting.size() > 1) return Run::course;
-  const Waiting& single = waiting.front();
-  if (single.piece.shape == Piece::Shape::line) return Run::spans;
-  if (config.law == Law::course) return Run::course;
+/// From rest to rest a line needs no course, nor an arc that needs little of its axes.
+void Planner::Impl::drive(const Laid& what) {
+  const auto& [e, piece] = what;
+  if (piece.shape == Piece::Shape::line) return drive_alone(e, piece, confirms(e));
   Leg leg;
-  leg.piece = single.piece;
+  leg.piece = piece;
   leg.limits = &config.limits;
-  leg.axes = axes_moved(config, single.piece);
-  leg.feed = single.element.feed;
-  return needs_its_axes(leg, fastest(leg, config.axis_count), config.axis_count) ? Run::course : Run::spans;
-}
-
-bool Planner::Impl::rests_before(const Element& e, const Piece& piece) const {
-  if (run == Run::course || run == Run::undecided) {
-    if (run != Run::undecided && !(suits_course(e) && same_feed(e))) return true;
-    return rests_between(config, before.element.transition, before.piece, e, piece);
-  }
-  return run == Run::spans && rests && suits_course(e) && goes_on(e);  // and may go over to a course
-}
-
-void Planner::Impl::wait(const Element& e, const Piece& piece) {
-  if (waiting.empty()) waiting_from = at;
-  waiting.push_back({e, piece});
-  if (waiting.size() > 1) decide();
-}
-
-void Planner::Impl::decide() {
-  run = suitable();
-  if (run == Run::spans) {
-    contour.restart(waiting_from);
-    law.begin_at(publisher.next().piece, publisher.planned());
-  } else {
-    begin_course(waiting_from);
-  }
-  for (const Waiting& w : waiting) pass_on(w.element, w.piece);
-  waiting.clear();
+  leg.axes = axes_moved(config, piece);
+  leg.feed = e.feed;
+  if (!needs_its_axes(leg, fastest(leg, config.axis_count), config.axis_count))
+    return drive_alone(e, piece, confirms(e));
+  begin_course(path::position(piece, 0.0, config.axis_count));
+  pass_on(e, piece);
 }
 
 void Planner::Impl::begin_course(const Vector& from) {
+  run = Run::course;
   gather.restart(from);
   on_course.clear();
   course_length = 0.0;
-}
-
-void Planner::Impl::pass_on(const Element& e, const Piece& piece) {
-  if (run == Run::spans) {
-    contour.add(e);
-    return;
-  }
-  put_on_course(e, piece);
-  gather.add(e);
-  if (gather.open()) return;
-  while (fall_back()) {
-  }
-  end_run();
 }
 
 void Planner::Impl::put_on_course(const Element& e, const Piece& piece) {
@@ -217,15 +184,23 @@ void Planner::Impl::put_on_course(const Element& e, const Piece& piece) {
     on_course.pop_front();
 }
 
-/// From rest to rest, exactly on the path; with what behind it moves nothing and decides how it ends.
-void Planner::Impl::drive_alone(const std::vector<Element>& parts, std::deque<OnCourse>& behind) {
-  for (const Element& part : parts) {
-    contour.add(part);
-    if (&part == &parts.back())
-      for (; !behind.empty() && behind.front().what.piece.length == 0.0; behind.pop_front())
-        contour.add(behind.front().what.element);
-    contour.finish();
+void Planner::Impl::pass_on(const Element& e, const Piece& piece) {
+  put_on_course(e, piece);
+  gather.add(e);
+  if (gather.open()) return;
+  while (fall_back()) {
   }
+  end_run();
+}
+
+/// What is left of an element, exactly on its path; gives where it ends.
+Vector Planner::Impl::drive_rest(Vector from, const std::vector<Element>& parts, bool confirm) {
+  for (const Element& part : parts) {
+    const Piece piece = shape(config, from, part).piece;
+    if (piece.length > 0.0) drive_alone(part, piece, confirm && &part == &parts.back());
+    from = part.to;
+  }
+  return from;
 }
 
 /// No law was found for what comes next. Behind the place where the course rests some elements are driven
@@ -237,19 +212,20 @@ bool Planner::Impl::fall_back() {
   while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= rest.place)
     on_course.pop_front();
   std::deque<OnCourse> left = std::exchange(on_course, {});
-  const Waiting first = left.front().what;
+  const Laid first = left.front().what;
   const double s = std::clamp(rest.place - left.front().begin, 0.0, first.piece.length);
   if (rest.x || alone == 0) unasked_rest = first.element.tag;
   alone = rest.x ? 1 : std::max<std::size_t>(1, 2 * alone);
   course->restart();
-  contour.restart(rest.x ? *rest.x : path::position(first.piece, s, config.axis_count));
-  law.begin_at(publisher.next().piece, publisher.planned());
-  Vector from{};
+  Vector from = rest.x ? *rest.x : path::position(first.piece, s, config.axis_count);
   for (std::size_t n = 0; n < alone && !left.empty(); ++n) {
     const Element e = left.front().what.element;
     left.pop_front();
-    drive_alone(n == 0 ? rest_of(e, first.piece, s, config.axis_count) : std::vector<Element>{e}, left);
-    from = e.to;
+    bool confirm = confirms(e);
+    for (; !left.empty() && left.front().what.piece.length == 0.0; left.pop_front())
+      confirm = confirm || confirms(left.front().what.element);
+    from = drive_rest(from, n == 0 ? rest_of(e, first.piece, s, config.axis_count) : std::vector<Element>{e},
+                      confirm);
   }
   begin_course(from);
   if (left.empty()) end_run();
@@ -264,32 +240,54 @@ bool Planner::Impl::add(const Element& e) {
   const Shaped shaped = shape(config, at, e);
   flaw = shaped.flaw;
   if (flaw != Flaw::none) return false;
-  const bool moves = shaped.piece.length > 0.0;
-  const bool locked = e.lock.kind != Lock::Kind::none;
-  if (moves && locked != (before.element.lock.kind != Lock::Kind::none)) finish();
-  if (moves && run == Run::undecided && !same_feed(e)) decide();
-  if (moves && rests_before(e, shaped.piece)) finish();
-  if (run == Run::none) run = Run::undecided;
-  if (run != Run::undecided) {
-    pass_on(e, shaped.piece);
-  } else if (moves) {
-    wait(e, shaped.piece);
-    if (run == Run::undecided && !(suits_course(e) && goes_on(e))) decide();
-  } else if (waiting.empty()) {
-    run = Run::none;
-  } else if (!goes_on(e)) {  // it only decides how the element before ends
-    decide();
-    pass_on(e, shaped.piece);
-  }
-  if (moves) rests = !goes_on(e);
-  if (moves) before = {e, shaped.piece};
+  if (shaped.piece.length > 0.0)
+    take(e, shaped.piece);
+  else if (!goes_on(e))
+    rest_behind(e, shaped.piece);
   at = e.to;
   return true;
 }
 
+/// The one place where the law is chosen: two elements and more are a course.
+void Planner::Impl::take(const Element& e, const Piece& piece) {
+  if (run == Run::course && passes_into(on_course.back().what, e, piece)) return pass_on(e, piece);
+  if (single && passes_into(*single, e, piece)) {
+    const Laid before = *std::exchange(single, std::nullopt);
+    begin_course(path::position(before.piece, 0.0, config.axis_count));
+    pass_on(before.element, before.piece);
+    return pass_on(e, piece);
+  }
+  const bool thread = e.lock.kind == Lock::Kind::thread;
+  if (!thread || run != Run::threads) finish();
+  if (e.lock.kind > Lock::Kind::thread) return drive_alone(e, piece, false);
+  if (!thread) {
+    single = {e, piece};
+    return;
+  }
+  if (run != Run::threads) {
+    run = Run::threads;
+    chain.restart(at);
+    law.begin_at(publisher.next().piece, publisher.planned());
+  }
+  chain.add(e);
+}
+
+/// The element moves nothing and decides how the one before ends.
+void Planner::Impl::rest_behind(const Element& e, const Piece& piece) {
+  if (single) {
+    Transition& t = single->element.transition;
+    t.confirm = confirms(single->element) || confirms(e);
+    t.continuation = Continuation::exact_stop;
+  } else if (run == Run::course) {
+    pass_on(e, piece);
+  } else {
+    finish();
+  }
+}
+
 void Planner::Impl::finish() {
-  if (run == Run::undecided) decide();
-  if (run == Run::spans) contour.finish();
+  if (single) drive(*std::exchange(single, std::nullopt));
+  if (run == Run::threads) chain.finish();
   while (run == Run::course) {
     gather.finish();
     if (!fall_back()) break;
@@ -304,7 +302,6 @@ Planner::~Planner() = default;
 Track::Begin Planner::restart(const Vector& at) {
   Impl& p = *impl_;
   const Track::Begin begin = p.publisher.next();
-  p.contour.restart(at);
   p.law.restart();
   p.course->restart();
   p.forget();

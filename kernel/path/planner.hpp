@@ -10,10 +10,10 @@
 
 namespace servogate::path {
 
-/// Turns programmed elements into geometry and speeds that can be driven, outside the cycle: rounds the
-/// corners, bounds each piece, looks ahead. One per process; one thread calls it. What it publishes depends
-/// on the sequence of calls of add, add_event, finish and restart only, never on when they are made. Not
-/// real-time safe.
+/// Turns programmed elements into geometry and speeds that can be driven, outside the cycle: makes
+/// courses of what goes on without a rest, bounds the rest piece by piece. One per process; one thread calls
+/// it. What it publishes depends on the sequence of calls of add, add_event, finish and restart only, never
+/// on when they are made. Not real-time safe.
 class Planner {
  public:
   /// All positions are path coordinates, see Config::transformation. `forecast`: courses are foretold there,

@@ -19,7 +19,6 @@ Survey::Survey(const Config& config, const Vector& start) : time_(config, start,
 bool Survey::add(const Element& element) {
   Element numbered = element;
   numbered.tag.command = first_ + elements_.size();
-  numbered.lock = {};  // no spindle turns here: at the speed that its lead is planned for
   elements_.push_back({element.tag, element.kind == Element::Kind::rapid ? 0.0 : element.feed});
   if (time_.add(numbered)) return true;
   elements_.pop_back();

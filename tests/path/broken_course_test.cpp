@@ -18,7 +18,6 @@ namespace {
 RandomProgram without_a_law() {
   RandomProgram p;
   p.config = mill();
-  p.config.law = Law::course;
   p.config.reserve = -1.0;
   p.tolerance = 0.01;
   for (int k = 1; k <= 600; ++k) p.elements.push_back(line_to(0.3 * k, 0, 0, 60));
@@ -199,8 +198,7 @@ class Breaking final : public CourseSink {
 TEST(BrokenCourse, that_is_broken_rests_in_one_place_however_it_is_held_and_what_is_behind_follows) {
   std::vector<Vector> rests;
   for (int held = 0; held < 3000; held += held < 1200 ? 400 : 61) {
-    Config config = mill();
-    config.law = Law::course;
+    const Config config = mill();
     Track track(config);
     Publisher publisher(track);
     Breaking breaking(publisher);

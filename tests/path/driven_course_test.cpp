@@ -17,14 +17,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Config course_mill() {
-  Config config = mill();
-  config.law = Law::course;
-  return config;
-}
-
 struct Machine : DrivenPath {
-  explicit Machine(const Config& c = course_mill()) : DrivenPath(c) {}
+  explicit Machine(const Config& c = mill()) : DrivenPath(c) {}
 };
 
 std::vector<Element> circle(int blocks, double feed) {
@@ -49,12 +43,8 @@ void load(Machine& m, const std::vector<Element>& elements) {
 }
 
 TEST(DrivenCourse, of_a_circle_in_a_thousand_blocks_takes_what_is_known_to_be_the_least) {
-  Config config = mill();
-  const std::vector<Element> blocks = circle(1000, 100);
-  EXPECT_LE(estimate(config, {}, blocks).seconds, 1.475);  // ideal 1.457
-  EXPECT_LE(estimate(config, {}, std::vector{arc_to(0, 0, 20, 0, 360, 100)}).seconds, 1.475) << "one arc";
-  config.law = Law::spans;
-  EXPECT_GT(estimate(config, {}, blocks).seconds, 1.9);
+  EXPECT_LE(estimate(mill(), {}, circle(1000, 100)).seconds, 1.475);  // ideal 1.457
+  EXPECT_LE(estimate(mill(), {}, std::vector{arc_to(0, 0, 20, 0, 360, 100)}).seconds, 1.475) << "one arc";
 }
 
 TEST(DrivenCourse, is_chosen_for_two_elements_and_more_and_for_an_arc_that_needs_its_axes) {
@@ -76,16 +66,11 @@ TEST(DrivenCourse, is_chosen_for_two_elements_and_more_and_for_an_arc_that_needs
   EXPECT_EQ(courses({square[0]}, mill()), 0) << "a line from rest to rest";
   EXPECT_EQ(courses({arc_to(0, 0, 20, 0, 360, 100)}, mill()), 1) << "an arc that needs half the acceleration";
   EXPECT_EQ(courses({arc_to(0, 0, 60, 0, 360, 100)}, mill()), 0);
-  EXPECT_EQ(courses(square, course_mill()), 1);
-  EXPECT_EQ(courses({line_to(1, 0, 0, 100)}, course_mill()), 0) << "a line from rest to rest";
   std::vector<Element> turned = circle(100, 100);
   for (Element& e : turned) e.revolutions = 10.0;
   EXPECT_EQ(courses(turned, mill()), 1) << "feed per revolution";
   for (std::size_t k = 50; k < turned.size(); ++k) turned[k].revolutions = 0.0;
   EXPECT_EQ(courses(turned, mill()), 2) << "with a rest where the feed is another";
-  Config spans = mill();
-  spans.law = Law::spans;
-  EXPECT_EQ(courses(circle(100, 100), spans), 0);
 }
 
 TEST(DrivenCourse, holds_in_the_next_cycle_rests_on_the_path_and_goes_on) {
@@ -292,7 +277,7 @@ TEST(DrivenCourse, stops_drops_the_rest_and_a_restart_goes_on_from_there) {
 
 TEST(DrivenCourse, slows_down_on_the_path_where_planning_is_late_and_never_leaves_what_is_known) {
   RandomProgram p;
-  p.config = course_mill();
+  p.config = mill();
   p.tolerance = 0.01;
   p.elements = wave(2500, 100);
   for (const int cycles : {3, 6, 12}) {  // for an element that takes three
@@ -415,7 +400,7 @@ TEST(DrivenCourse, gives_velocity_and_acceleration_of_its_set_points) {
 
 TEST(DrivenCourse, is_held_in_the_middle_of_a_long_line_as_soon_as_at_any_constant_speed) {
   for (const double length : {200.0, 400.0, 1000.0}) {
-    Machine m(course_mill());
+    Machine m(mill());
     load(m, {line_to(length, 0, 0, 100), line_to(length, length, 0, 100)});
     for (int k = 0; k < 600; ++k) m.step();
     EXPECT_NEAR(m.last.feed, 100.0, 0.5);
@@ -433,7 +418,7 @@ TEST(DrivenCourse, is_held_in_the_middle_of_a_long_line_as_soon_as_at_any_consta
 TEST(DrivenCourse, stops_sooner_and_takes_longer_with_a_greater_reserve) {
   double stop = 10.0, whole = 0.0;
   for (const double reserve : {0.01, 0.2}) {
-    Config config = course_mill();
+    Config config = mill();
     config.reserve = reserve;
     Machine m(config);
     load(m, circle(1000, 200));  // at the limit of acceleration
@@ -447,19 +432,6 @@ TEST(DrivenCourse, stops_sooner_and_takes_longer_with_a_greater_reserve) {
     EXPECT_GT(seconds, 1.03 * whole);
     whole = seconds;
     EXPECT_LE(m.most(), 1.001);
-  }
-}
-
-TEST(DrivenCourse, takes_no_longer_than_spans_by_more_than_the_reserve) {
-  const std::uint64_t base = servogate::test::property_seed();
-  for (std::uint64_t seed = base; seed < base + 20; ++seed) {
-    RandomProgram p = random_program(seed, {seed % 3 == 0 ? 80 : 8, true, true});
-    const auto seconds = [&](Law law) {
-      p.config.law = law;
-      return estimate(p.config, p.start, p.elements).seconds;
-    };
-    const double spans = seconds(Law::spans);
-    EXPECT_LE(seconds(Law::fitting), spans * (1.0 + p.config.reserve) + 0.01) << seed;
   }
 }
 

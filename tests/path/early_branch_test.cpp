@@ -21,7 +21,6 @@ constexpr double kLine = 260.0, kFeed = 100.0, kCycle = 0.001;
 RandomProgram program(const std::vector<Element>& elements, const Config& config = mill()) {
   RandomProgram p;
   p.config = config;
-  p.config.law = Law::course;
   p.tolerance = 0.01;
   p.elements = elements;
   return p;

@@ -37,9 +37,8 @@ int some(std::size_t k) { return k % 3 == 0 ? 1 : k % 7 == 0 ? 2 : 0; }
 int each(std::size_t /*k*/) { return 1; }
 
 TEST(Mark, is_counted_once_each_and_leaves_the_path_as_it_is) {
-  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     RandomProgram p = random_program(seed, {8, true, true});
-    p.config.law = seed % 20 == 0 ? Law::course : Law::spans;
     if (seed % 2) p.elements.push_back(p.elements.back());  // of no length
     const std::vector<Sample> with = drive(p, some), without = drive(p, none);
     ASSERT_EQ(with.size(), without.size());

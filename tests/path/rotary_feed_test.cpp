@@ -51,17 +51,15 @@ TEST(RotaryFeed, is_kept_where_the_linear_axes_move_less_than_the_tolerance) {
   const RandomProgram plain = turning(300, 0.5, [](int) { return 0.0; });
   const double usual = seconds(run(plain, {}));
   EXPECT_NEAR(usual, 3.0, 0.2);
-  for (std::uint64_t k = 0; k < 24; ++k) {
+  for (std::uint64_t k = 0; k < 16; ++k) {
     std::mt19937_64 random(seed + k);
     const double size = std::pow(10.0, -9.0 + 6.7 * std::uniform_real_distribution(0.0, 1.0)(random));
-    RandomProgram p =
+    const RandomProgram p =
         turning(300, 0.5, [&](int) { return size * std::uniform_real_distribution(-1.0, 1.0)(random); });
-    p.config.law = k % 3 == 0 ? Law::spans : k % 3 == 1 ? Law::course : Law::fitting;
     const Trip trip = run(p, {});
     EXPECT_EQ(verdict(trip, p), "") << seed + k;
     EXPECT_LE(fastest(trip), 1.002 * kFeed) << seed + k << ", " << size << " mm";
-    const double most = p.config.law == Law::spans ? 100.0 : 1.1;
-    EXPECT_LE(seconds(trip), most * usual) << seed + k << ", " << size << " mm";
+    EXPECT_LE(seconds(trip), 1.1 * usual) << seed + k << ", " << size << " mm";
   }
 }
 

@@ -49,19 +49,17 @@ std::string broken(const Profile& p, const Box& b) {
   return {};
 }
 
-TEST(SCurve, keeps_its_box_and_ends_at_the_end_of_the_span_from_a_million_states) {
+TEST(SCurve, keeps_its_box_and_rests_at_the_end_of_its_way_from_a_million_states) {
   constexpr std::uint64_t kSeed = 20240611;
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   Dice dice(kSeed);
-  int planned = 0, slowest = 0, rested = 0;
+  int planned = 0, rested = 0;
   for (int k = 0; k < 1'000'000; ++k) {
     const Box b = dice.box();
     const MotionState from = dice.state(b);
     Goal g;
     g.velocity = dice.chance(0.15) ? 0.0 : dice.uniform(0.01, 1.0) * b.velocity;
-    g.exit_limit = dice.chance(0.3) ? 0.0 : dice.uniform(0, b.velocity);
-    g.exit = dice.uniform(0, 1) * std::min(g.exit_limit, g.velocity);
-    g.length = ramp_distance(from.v, from.a, g.exit_limit, b) * dice.logarithmic(0.9, 100) + 1e-9;
+    g.length = ramp_distance(from.v, from.a, 0.0, b) * dice.logarithmic(0.9, 100) + 1e-9;
     Profile p;
     p.start({-1, -1, -1});
     if (!plan(p, from, g, b)) {
@@ -72,7 +70,7 @@ TEST(SCurve, keeps_its_box_and_ends_at_the_end_of_the_span_from_a_million_states
     const MotionState end = p.end();
     ASSERT_EQ(broken(p, b), "") << k;
     ASSERT_EQ(end.a, 0.0);
-    ASSERT_LE(end.v, g.exit_limit * (1 + 1e-9) + 1e-300) << k;
+    ASSERT_EQ(end.v, 0.0) << k;
     // The phases really lead where the profile says that it ends.
     Profile again;
     again.start(from);
@@ -81,14 +79,11 @@ TEST(SCurve, keeps_its_box_and_ends_at_the_end_of_the_span_from_a_million_states
     ASSERT_NEAR(last.v, end.v, 1e-5 * b.velocity) << k;
     if (end.s < from.s + g.length) {
       ASSERT_EQ(g.velocity, 0.0) << "only a wish to rest ends before the end";
-      ASSERT_EQ(end.v, 0.0);
       ++rested;
     }
-    slowest += end.v > g.exit ? 1 : 0;
   }
   // Each of the ways out was met often.
   EXPECT_GT(planned, 700'000);
-  EXPECT_GT(slowest, 10'000);
   EXPECT_GT(rested, 10'000);
 }
 
@@ -100,7 +95,6 @@ TEST(SCurve, drives_what_is_left_by_rounding_in_no_time) {
     if (dice.chance(0.3)) from.a = -dice.uniform(0, 1) * std::sqrt(2.0 * b.jerk * from.v);
     Goal g;
     g.velocity = b.velocity * dice.logarithmic(0.01, 1);
-    g.exit_limit = g.exit = dice.chance(0.5) ? 0.0 : dice.logarithmic(1e-22, 1e-6);
     g.length = dice.logarithmic(1e-18, 1e-7);
     Profile p;
     if (!plan(p, from, g, b)) continue;
@@ -108,19 +102,19 @@ TEST(SCurve, drives_what_is_left_by_rounding_in_no_time) {
   }
 }
 
-TEST(SCurve, finds_a_way_wherever_the_exit_can_be_reached) {
+TEST(SCurve, finds_a_way_wherever_rest_can_be_reached) {
   Dice dice(7);
   for (int k = 0; k < 300'000; ++k) {
     const Box b = dice.box();
     const MotionState from = dice.state(b);
     Goal g;
     g.velocity = dice.uniform(0.2, 1.0) * b.velocity;
-    g.exit = g.exit_limit = dice.uniform(0, 1) * g.velocity;
-    g.length = ramp_distance(from.v, from.a, g.exit, b) * dice.logarithmic(1.0001, 3.0);
+    g.length = ramp_distance(from.v, from.a, 0.0, b) * dice.logarithmic(1.0001, 3.0);
     Profile p;
     if (g.length < 1e-6) continue;
     ASSERT_TRUE(plan(p, from, g, b)) << k;
-    ASSERT_NEAR(p.end().v, g.exit, 1e-9 * b.velocity) << k;
+    ASSERT_EQ(p.end().v, 0.0) << k;
+    ASSERT_NEAR(p.end().s, from.s + g.length, 1e-9) << k;
   }
 }
 
@@ -142,7 +136,7 @@ TEST(SCurve, from_rest_to_rest_takes_the_textbook_time) {
       expected = 2 * ramp(w);
     }
     Profile p;
-    ASSERT_TRUE(plan(p, {}, {length, v, 0.0, 0.0}, b));
+    ASSERT_TRUE(plan(p, {}, {length, v}, b));
     ASSERT_NEAR(p.duration(), expected, 1e-6 * expected)
         << k << " " << v << " " << a << " " << j << " " << length;
   }
@@ -151,7 +145,7 @@ TEST(SCurve, from_rest_to_rest_takes_the_textbook_time) {
 TEST(SCurve, brakes_to_rest_at_once_when_asked) {
   const Box b{500, 1000, 10000};
   Profile p;
-  ASSERT_TRUE(plan(p, {0, 100, 0}, {1000, 0, 0, 0}, b));
+  ASSERT_TRUE(plan(p, {0, 100, 0}, {1000, 0}, b));
   EXPECT_NEAR(p.duration(), 0.2, 1e-12);  // 100 / 1000 + 1000 / 10000
   EXPECT_NEAR(p.end().s, 10.0, 1e-9);
   EXPECT_LT(p.at(0.001).a, 0.0) << "the first thing it does is to brake";
@@ -161,13 +155,10 @@ TEST(SCurve, reachable_speed_is_the_inverse_of_the_ramp_distance) {
   Dice dice(11);
   for (int k = 0; k < 300'000; ++k) {
     const Box b = dice.box();
-    const double v1 = dice.chance(0.2) ? 0.0 : dice.logarithmic(1e-3, 500),
-                 length = dice.logarithmic(1e-7, 1e3);
-    const double v = reachable_speed(v1, length, b);
-    ASSERT_GE(v, v1);
-    if (v - v1 < 1e-6 * v) continue;  // the difference of the two is rounding
-    ASSERT_NEAR(ramp_distance(v, 0.0, v1, b), length, 1e-9 * length) << k;
-    ASSERT_NEAR(ramp_distance(v1, 0.0, v, b), length, 1e-9 * length) << k;
+    const double length = dice.logarithmic(1e-7, 1e3);
+    const double v = reachable_speed(length, b);
+    ASSERT_NEAR(ramp_distance(v, 0.0, 0.0, b), length, 1e-9 * length) << k;
+    ASSERT_NEAR(ramp_distance(0.0, 0.0, v, b), length, 1e-9 * length) << k;
   }
 }
 
@@ -175,11 +166,10 @@ TEST(SCurve, a_longer_way_never_takes_less_time) {
   Dice dice(5);
   for (int k = 0; k < 100'000; ++k) {
     const Box b = dice.box();
-    const double exit = dice.uniform(0, 0.5) * b.velocity;
-    const double length = ramp_distance(0, 0, exit, b) + dice.logarithmic(1e-5, 100);
+    const double length = dice.logarithmic(1e-5, 100);
     Profile p, q;
-    ASSERT_TRUE(plan(p, {}, {length, b.velocity, exit, exit}, b));
-    ASSERT_TRUE(plan(q, {}, {length * 1.01, b.velocity, exit, exit}, b));
+    ASSERT_TRUE(plan(p, {}, {length, b.velocity}, b));
+    ASSERT_TRUE(plan(q, {}, {length * 1.01, b.velocity}, b));
     ASSERT_GE(q.duration(), p.duration() * (1 - 1e-9)) << k;
   }
 }

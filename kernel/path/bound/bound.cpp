@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/path/axes/transformation.hpp"
 
@@ -173,26 +174,29 @@ double path_rate(const Config& config, const Piece& p) {
   return std::max(1.0, worst);
 }
 
-Bound bound(const Config& config, const Piece& piece, const Pace& pace) {
+Bound bound(const Config& config, const Piece& piece, const Element& e) {
   Bound out;
-  out.feed.speed = pace.feed / path_rate(config, piece);
-  if (pace.lock.kind != Lock::Kind::none) {
-    const double begin = pace.lock.per_turn_at(piece.offset),
-                 end = pace.lock.per_turn_at(piece.offset + piece.length);
-    out.feed.lock = pace.lock;
+  const bool rapid = e.kind == Element::Kind::rapid;
+  const double turns = rapid ? 0.0 : e.revolutions;
+  const bool locked = !rapid && e.lock.kind != Lock::Kind::none;
+  out.feed.speed = rapid ? std::numeric_limits<double>::infinity() : e.feed / path_rate(config, piece);
+  if (locked) {
+    const double begin = e.lock.per_turn_at(piece.offset),
+                 end = e.lock.per_turn_at(piece.offset + piece.length);
+    out.feed.lock = e.lock;
     if (piece.shape == Piece::Shape::line)
       out.feed.lock.per_turn = begin;
     else
       out.feed.lock.change = 0.0;
-    out.feed.speed = std::max(begin, end) * pace.turns / path_rate(config, piece);
+    out.feed.speed = std::max(begin, end) * turns / path_rate(config, piece);
   }
-  if (pace.turns > 0.0) out.feed.per_turn = out.feed.speed / pace.turns;
-  out.feed.turns = pace.turns;
-  out.feed.rapid = piece.rapid;
+  if (turns > 0.0) out.feed.per_turn = out.feed.speed / turns;
+  out.feed.turns = turns;
+  out.feed.rapid = rapid;
   // What a line may accelerate does not depend on its speed: its master may bring it to the axes' limits.
-  const bool free = pace.lock.kind != Lock::Kind::none && piece.shape == Piece::Shape::line;
-  out.box =
-      box(config, piece, free ? pace.cap : std::min(pace.cap, out.feed.speed * config.largest_override));
+  const bool free = locked && piece.shape == Piece::Shape::line;
+  out.box = box(config, piece,
+                free ? std::numeric_limits<double>::infinity() : out.feed.speed * config.largest_override);
   out.feed.speed = std::min(out.feed.speed, out.box.velocity);
   return out;
 }

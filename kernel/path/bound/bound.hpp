@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "kernel/path/shape/contour.hpp"
+#include "kernel/path/shape/piece.hpp"
 
 namespace servogate::path {
 
@@ -31,7 +31,7 @@ Box box(const Config& config, const Piece& piece, double velocity_cap);
 /// Largest speed of the vector over mm and degrees for a parameter speed of 1.
 double path_rate(const Config& config, const Piece& piece);
 
-/// Box and feed of a piece as the contour put it.
-Bound bound(const Config& config, const Piece& piece, const Pace& pace);
+/// Box and feed of a piece that is driven as `element` says.
+Bound bound(const Config& config, const Piece& piece, const Element& element);
 
 }  // namespace servogate::path

@@ -16,67 +16,39 @@ struct Wish {
 inline double spindle_share(const Feed& feed, double spindle) noexcept {
   return feed.per_turn > 0.0 && spindle >= 0.0 ? spindle / feed.turns : 1.0;
 }
-/// The same of the terms of a span. real-time safe.
-inline double spindle_share(const Terms& terms, double spindle) noexcept {
-  return spindle_share(terms.feed, spindle);
-}
-/// The span is driven by the spindle's speed (feed per revolution). real-time safe.
-inline bool follows_spindle(const Terms& terms) noexcept { return terms.feed.per_turn > 0.0; }
 
-/// The law inside the cycle: owns place, speed and acceleration within the span in motion, and is the only
-/// one to know how they go on. It drives by the terms of the spans, and has the branch for what they did not
-/// foresee: hold, an override, another speed of the spindle, planning that is late. `ahead` begins with the
-/// span in motion. All functions but the constructor are real-time safe.
+/// The law inside the cycle for a span from rest to rest: owns place, speed and acceleration, and is the only
+/// one to know how they go on. The way off the law, for a hold, an override or another speed of the spindle,
+/// is an S-curve of the same kind from the present state. All functions are real-time safe.
 class Motion {
  public:
-  explicit Motion(const Config& config) : largest_override_(config.largest_override) {}
-
-  /// Takes up the span in motion at its start, from rest.
-  void begin(const Ahead& ahead, const Wish& wish) noexcept;
-  /// Goes on in the span that is now in motion, behind one of `length`.
-  void pass(double length, const Ahead& ahead, const Wish& wish) noexcept;
+  /// Takes up a span at its start, from rest.
+  void begin(const Span& span, const Wish& wish) noexcept;
   /// At rest, with no span in motion.
-  void rest() noexcept;
-
-  /// The terms of the span in motion, or the wish, are no longer what they were.
+  void rest() noexcept { state_ = {}; }
+  /// The wish is no longer what it was.
   void renew() noexcept { stale_ = true; }
-  /// Once a cycle, before advance(): follows the wish.
-  void obey(const Ahead& ahead, const Wish& wish) noexcept;
-  /// Goes on by `left` seconds, or to the end of the span in motion: then true, and `left` is what remains.
-  bool advance(double& left, const Ahead& ahead) noexcept;
+  /// Once a cycle, before advance(): follows the wish along the span in motion.
+  void obey(const Span& span, const Wish& wish) noexcept;
+  /// Goes on by `seconds`. True: it is at rest in the end of the span.
+  bool advance(double seconds) noexcept;
 
   const MotionState& state() const noexcept { return state_; }
   /// Neither speed nor acceleration is present.
   bool at_rest() const noexcept { return state_.v == 0.0 && state_.a == 0.0; }
 
  private:
-  bool replan(const Ahead& ahead, const Wish& wish) noexcept;
-  bool bridge(const Ahead& ahead) noexcept;
-  bool bridge_clears(const Ahead& ahead, const Profile& way, int spans, const Box& least) const noexcept;
+  bool replan(const Span& span, const Wish& wish) noexcept;
 
-  double largest_override_;
   MotionState state_;    ///< within the span
   double length_ = 0.0;  ///< of the span
   Profile profile_;
-  double clock_ = 0.0;     ///< time within the profile
-  bool bridging_ = false;  ///< the profile leads to rest across spans, with acceleration at their ends
-  double base_ = 0.0;      ///< place of the present span's start in the profile's coordinate
-  bool stale_ = false;     ///< the profile wants planning anew
-  bool resting_ = false;   ///< what the profile was planned for
+  double clock_ = 0.0;    ///< time within the profile
+  bool stale_ = false;    ///< the profile wants planning anew
+  bool resting_ = false;  ///< what the profile was planned for
 };
 
-/// How long the path takes at override 1, with the spindle turning as planned, span by span.
-class Timing {
- public:
-  /// Seconds from the start of `span`, reached as the one before was left, to its end. `behind`: the next
-  /// one; nullptr where the path rests.
-  double through(const Span& span, const Span* behind);
-  /// How it goes along the last span, from its start; no longer than nothing where there was no way.
-  const Profile& profile() const { return profile_; }
-
- private:
-  MotionState at_;
-  Profile profile_;
-};
+/// How a span from rest to rest is driven at override 1, with the spindle turning as planned.
+Profile as_planned(const Span& span);
 
 }  // namespace servogate::path

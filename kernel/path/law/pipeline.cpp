@@ -107,7 +107,7 @@ bool Pipeline::move_instead() {
   }
   Move move;
   move.line = leg.piece;
-  if (!plan(move.profile, {}, {leg.piece.length, box.velocity, 0.0, 0.0}, box)) return false;
+  if (!plan(move.profile, {}, {leg.piece.length, box.velocity}, box)) return false;
   sink_.move(move);
   ++counts_.moves;
   return true;

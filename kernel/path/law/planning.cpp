@@ -38,15 +38,12 @@ Box least(const Box& a, const Box& b) {
 }  // namespace
 
 Planning::Planning(const Config& config, std::uint32_t capacity, SpanSink& sink)
-    : config_(config),
-      most_pieces_(std::min(kMostPieces, capacity / 16)),
-      sink_(sink),
-      lookahead_(capacity / 2, sink) {}
+    : config_(config), most_pieces_(std::min(kMostPieces, capacity / 16)), sink_(sink) {}
 
 void Planning::restart() {
   open_ = Open{};
   pieces_.clear();
-  lookahead_.clear();
+  last_.reset();
 }
 
 /// True when the piece is driven with the open span at little loss of time.
@@ -73,13 +70,15 @@ void Planning::append(const Piece& piece, const Bound& bound) {
   feed.per_turn = pieces_.empty() ? bound.feed.per_turn : std::min(feed.per_turn, bound.feed.per_turn);
   feed.turns = std::max(feed.turns, bound.feed.turns);
   if (pieces_.empty()) feed.lock = bound.feed.lock;
-  feed.rapid = bound.feed.rapid;  // a rapid shares no span with others: it starts and ends at rest
+  feed.rapid = bound.feed.rapid;
   pieces_.push_back(piece);
 }
 
 void Planning::close() {
   if (pieces_.empty()) return;
-  Span span;
+  if (last_) sink_.put(*last_);
+  Span& span = last_.emplace();
+  span.number = ++number_;
   span.first_piece = next_piece_;
   span.pieces = static_cast<std::uint32_t>(pieces_.size());
   Box& box = span.terms.box;
@@ -99,12 +98,15 @@ void Planning::close() {
   next_piece_ += span.pieces;
   open_ = Open{};
   pieces_.clear();
-  lookahead_.append(span);
 }
 
 void Planning::rest(bool confirm) {
   close();
-  lookahead_.rest(confirm);
+  if (!last_) return;
+  last_->stop = true;
+  last_->confirm = confirm;
+  sink_.put(*last_);
+  last_.reset();
 }
 
 }  // namespace servogate::path

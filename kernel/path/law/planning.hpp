@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include "kernel/path/law/lookahead.hpp"
+#include "kernel/path/law/span.hpp"
 
 namespace servogate::path {
 
-/// The law outside the cycle: takes the pieces of a contour with what each allows, and gives spans with the
-/// terms on which they are driven. What it gives depends on the sequence of calls alone. Not real-time safe.
+/// The law of spans outside the cycle: takes pieces with what each allows, and gives spans with the terms on
+/// which they are driven: one piece from rest to rest, or the pieces of a chain of threads, those that allow
+/// about the same in one span. The last span is kept until it is known whether another follows. What it gives
+/// depends on the sequence of calls alone. Not real-time safe.
 class Planning {
  public:
   /// `capacity`: of the track, in pieces.
@@ -25,8 +29,6 @@ class Planning {
     next_piece_ = piece;
     time_ = planned;
   }
-  /// Number of the last span; markers carry it.
-  std::uint64_t last_number() const { return lookahead_.last_number(); }
 
  private:
   /// Sum of pieces that become one span.
@@ -41,11 +43,12 @@ class Planning {
   Config config_;
   std::size_t most_pieces_;  ///< in a span
   SpanSink& sink_;
-  Lookahead lookahead_;
   Open open_;
   std::vector<Piece> pieces_;  ///< of the open span
   std::uint64_t next_piece_ = 0;
-  double time_ = 0.0;  ///< running sum over the pieces
+  double time_ = 0.0;         ///< running sum over the pieces
+  std::uint64_t number_ = 0;  ///< of the last span
+  std::optional<Span> last_;  ///< not put yet
 };
 
 }  // namespace servogate::path

@@ -62,33 +62,21 @@ double solve(double low, double high, double length, F distance) {
   return low;
 }
 
-/// Distance of a change between two speeds, both without acceleration.
-double even_distance(double v0, double v1, const Box& box) {
-  const double rise = std::abs(v1 - v0), a = box.acceleration, j = box.jerk;
-  const double time = rise * j <= a * a ? 2.0 * std::sqrt(rise / j) : rise / a + a / j;
-  return 0.5 * (v0 + v1) * time;
+/// Distance of the way to rest without acceleration at its begin.
+double way_to_rest(double v, const Box& box) {
+  const double a = box.acceleration, j = box.jerk;
+  const double time = v * j <= a * a ? 2.0 * std::sqrt(v / j) : v / a + a / j;
+  return 0.5 * v * time;
 }
 
-void build(Profile& profile, const MotionState& from, double peak, double exit, double length,
-           const Box& box) {
-  const double d = ramp_distance(from.v, from.a, peak, box) + even_distance(peak, exit, box);
+void build(Profile& profile, const MotionState& from, double peak, double length, const Box& box) {
+  const double d = ramp_distance(from.v, from.a, peak, box) + way_to_rest(peak, box);
   profile.start(from);
   add_ramp(profile, from.v, from.a, peak, box);
   // A rest of rounding errors is no distance to drive: at a peak of rounding errors it would take for ever.
   if (peak > 0.0 && length - d > kSame) profile.add((length - d) / peak, 0.0);
-  add_ramp(profile, peak, 0.0, exit, box);
-  profile.finish_at({from.s + length, exit, 0.0});
-}
-
-/// Leaves the span with as little speed as can be reached.
-bool plan_slowest(Profile& profile, const MotionState& from, const Goal& goal, double natural,
-                  const Box& box) {
-  const auto distance = [&](double v) { return ramp_distance(from.v, from.a, v, box); };
-  if (distance(natural) > goal.length + kSame) return false;
-  const double exit = solve(natural, std::min(goal.exit, natural), goal.length + kSame, distance);
-  if (exit > goal.exit_limit * (1.0 + 1e-9)) return false;
-  build(profile, from, exit, exit, goal.length, box);
-  return true;
+  add_ramp(profile, peak, 0.0, 0.0, box);
+  profile.finish_at({from.s + length, 0.0, 0.0});
 }
 
 }  // namespace
@@ -135,61 +123,36 @@ void add_ramp(Profile& profile, double v0, double a0, double v1, const Box& box)
   profile.finish_at({profile.end().s, v1, 0.0});
 }
 
-double reachable_speed(double v1, double length, const Box& box) noexcept {
-  const double a = box.acceleration, j = box.jerk;
-  // Up to a^2 / j the acceleration limit is not met: (2 v1 + j x^2) x = length with x = sqrt(rise / j).
-  if ((2.0 * v1 + a * a / j) * a / j >= length) {
-    double x = std::cbrt(length / j);
-    if (v1 > 0.0) x = std::min(x, length / (2.0 * v1));
-    for (int round = 0; round < 12; ++round) {
-      const double f = x * (j * x * x + 2.0 * v1) - length;
-      if (f <= 1e-15 * length) break;
-      x -= f / (3.0 * j * x * x + 2.0 * v1);
-    }
-    return v1 + j * x * x;
+double reachable_speed(double length, const Box& box) noexcept {
+  const double a = box.acceleration, j = box.jerk, b = a * a / j;
+  // Up to a^2 / j the acceleration limit is not met: j x^3 = length with x = sqrt(v / j).
+  if (b * a / j >= length) {
+    const double x = std::cbrt(length / j);
+    return j * x * x;
   }
-  // (v + v1) / 2 * ((v - v1) / a + a / j) = length.
-  const double b = a * a / j;
-  return 0.5 * (-b + std::sqrt(std::max(0.0, b * b + 4.0 * (v1 * v1 - b * v1 + 2.0 * a * length))));
+  // v / 2 * (v / a + a / j) = length.
+  return 0.5 * (-b + std::sqrt(b * b + 8.0 * a * length));
 }
 
 bool plan(Profile& profile, const MotionState& from, const Goal& goal, const Box& box) noexcept {
-  const double natural = std::max(0.0, from.v + 0.5 * from.a * std::abs(from.a) / box.jerk);
   const double length = goal.length;
   const auto reach = [&](double v) { return ramp_distance(from.v, from.a, v, box); };
+  const double rests = reach(0.0);
+  if (rests > length + kSame) return false;
   if (goal.velocity <= 0.0) {
-    const double d = reach(0.0);
-    if (d > length) return plan_slowest(profile, from, {length, 0.0, 0.0, goal.exit_limit}, natural, box);
     profile.start(from);
     add_ramp(profile, from.v, from.a, 0.0, box);
-    profile.finish_at({from.s + d, 0.0, 0.0});
+    profile.finish_at({from.s + std::min(rests, length), 0.0, 0.0});
     return true;
   }
-  double exit = std::min({goal.exit, goal.exit_limit, goal.velocity});
-  const auto whole = [&](double peak) { return reach(peak) + even_distance(peak, exit, box); };
-  double low = exit;
-  if (exit >= natural) {
-    if (reach(natural) > length + kSame) return false;
-    if (reach(exit) > length) {
-      exit = solve(natural, exit, length + kSame, reach);
-      build(profile, from, exit, exit, length, box);
-      return true;
-    }
-  } else {
-    if (reach(exit) > length + kSame) {
-      // A lower speed at the end may need less length, see Lookahead; failing that, take the excess along.
-      if (reach(0.0) > length + kSame) return plan_slowest(profile, from, goal, natural, box);
-      exit = solve(0.0, exit, length + kSame, reach);
-      build(profile, from, exit, exit, length, box);
-      return true;
-    }
-    if (goal.velocity >= natural && whole(natural) <= length) low = natural;
-  }
-  // Nothing faster than this can slow down to the exit within the length.
-  double high = std::min(goal.velocity, std::max(low, reachable_speed(exit, length, box)));
+  const auto whole = [&](double peak) { return reach(peak) + way_to_rest(peak, box); };
+  const double natural = std::max(0.0, from.v + 0.5 * from.a * std::abs(from.a) / box.jerk);
+  const double low = goal.velocity >= natural && whole(natural) <= length ? natural : 0.0;
+  // Nothing faster than this can slow down to rest within the length.
+  double high = std::min(goal.velocity, std::max(low, reachable_speed(length, box)));
   if (low < natural && high > natural) high = natural;
   const double peak = high <= low ? low : solve(low, high, length, whole);
-  build(profile, from, peak, exit, length, box);
+  build(profile, from, peak, length, box);
   return true;
 }
 

@@ -57,23 +57,18 @@ double ramp_distance(double v0, double a0, double v1, const Box& box) noexcept;
 /// Appends that change to a profile that ends in (v0, a0). real-time safe.
 void add_ramp(Profile& profile, double v0, double a0, double v1, const Box& box) noexcept;
 
-/// Highest speed from which `v1` is reached within `length`, acceleration 0 at both ends; the same, read
-/// backwards, is the highest speed that is reached from v1. real-time safe.
-double reachable_speed(double v1, double length, const Box& box) noexcept;
+/// Highest speed from which rest is reached within `length`, acceleration 0 at both ends. real-time safe.
+double reachable_speed(double length, const Box& box) noexcept;
 
-/// What the profile over the rest of a span is asked for.
+/// What the profile up to a rest is asked for.
 struct Goal {
-  double length = 0.0;      ///< from the state's place to the end of the span
-  double velocity = 0.0;    ///< speed to hold, <= the box's; 0: come to rest as soon as possible
-  double exit = 0.0;        ///< wanted speed at the end, a = 0 there
-  double exit_limit = 0.0;  ///< largest speed at the end, >= exit
+  double length = 0.0;    ///< from the state's place to where it rests
+  double velocity = 0.0;  ///< speed to hold, <= the box's; 0: come to rest as soon as possible
 };
 
-/// The fastest profile from `state` that keeps the box: it ends at the end of the span with at most `exit`,
-/// or, where that cannot be reached any more, with the next lower or else the least speed that can (at most
-/// exit_limit). With velocity 0 it ends at rest before the end where it can. False, and the profile
-/// untouched, when there is none: the one that is being followed is then the way to go on. real-time safe: at
-/// most some hundred operations of arithmetic.
+/// The fastest profile from `state` that keeps the box and rests at the end of the length; with velocity 0 it
+/// rests before it where it can. False, and the profile untouched, when there is none: the one that is being
+/// followed is then the way to go on. real-time safe: at most some hundred operations of arithmetic.
 bool plan(Profile& profile, const MotionState& state, const Goal& goal, const Box& box) noexcept;
 
 }  // namespace servogate::path

@@ -22,7 +22,7 @@ bool MasterMotion::gather_legs(const Ahead& ahead) noexcept {
   double at = 0.0, sense = 1.0;
   for (int n = 0;; ++n) {
     const Span* span = ahead.span(n);
-    if (span == nullptr || !span->final || n == kMostLegs) return false;
+    if (span == nullptr || n == kMostLegs) return false;
     const Lock& lock = span->terms.feed.lock;
     if (lock.kind == Lock::Kind::none || lock.kind == Lock::Kind::thread) return false;
     const Box& box = span->terms.box;

@@ -24,13 +24,6 @@ struct AxisLimits {
   double jerk = 0.0;
 };
 
-/// How speed goes over the path; one law from rest to rest.
-enum class Law : std::uint8_t {
-  fitting,  ///< a course of two elements and more and of arcs that need much of their axes, else spans
-  spans,    ///< S-curves from span to span, acceleration zero between them
-  course,   ///< shape and law over one clock, acceleration carried through
-};
-
 /// One value for each axis.
 constexpr std::array<double, kMaxAxes> on_all_axes(double value) noexcept {
   std::array<double, kMaxAxes> all{};
@@ -67,9 +60,6 @@ struct Config {
   /// Share of the axes' limits that a course leaves for changes of rate, 0.002 to 0.2: more of it stops
   /// sooner and takes longer.
   double reserve = 0.01;
-  /// Of runs that a course can be made for: several elements, path coordinates of the axes. A course is
-  /// faster where elements are short; planning it costs by the time that it takes.
-  Law law = Law::fitting;
   const Transformation* transformation = &identity();  ///< axes/; from path coordinates to the axes
   Threads threads{};
 };

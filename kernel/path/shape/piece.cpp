@@ -179,7 +179,7 @@ Shaped shape(const Config& config, const Vector& from, const Element& e) {
   }
   piece.full = piece.length;
   piece.rapid = e.kind == Element::Kind::rapid;
-  piece.tag = piece.tag_before = e.tag;
+  piece.tag = e.tag;
   piece.target = e.to;
   return out;
 }

@@ -31,8 +31,7 @@ struct Piece {
   double start = 0.0;  ///< parameter at the piece's start within its span; filled by the law
   double time = 0.0;   ///< running sum of the shortest times, s; filled by the law
   double rest = 0.0;   ///< path length from the piece's end to the end of the element `tag`
-  Tag tag;             ///< element in motion; on a blend from its middle on
-  Tag tag_before;      ///< on a blend up to its middle
+  Tag tag;             ///< element in motion
   Vector target{};     ///< end point of the element `tag`
 };
 

@@ -149,7 +149,7 @@ void Smoothing::slice(const Piece& whole, std::size_t from, std::size_t to, std:
     const double b = k == to ? whole.length : line.start + line.piece.length - begin;
     Piece p = part(whole, a, b - a);
     p.rest = line.start + line.piece.length - begin - b;
-    p.tag = p.tag_before = line.piece.tag;
+    p.tag = line.piece.tag;
     p.target = line.piece.target;
     out.push_back({p, forgotten_ + k});
   }

@@ -13,13 +13,11 @@ constexpr std::uint64_t kKnotsKept = 8;
 
 }  // namespace
 
-void Publisher::put(const Span& span, bool revised, bool more) {
+void Publisher::put(const Span& span) {
   Entry& entry = entries_.emplace_back();
-  entry.kind = revised ? Entry::Kind::revise : Entry::Kind::span;
-  entry.more = more;
+  entry.kind = Entry::Kind::span;
   entry.span = span;
-  if (span.final) final_time_ = std::max(final_time_, span.time);
-  entry.planned = final_time_;
+  entry.planned = final_time_ = std::max(final_time_, span.time);
 }
 
 void Publisher::begin_course() {

@@ -13,7 +13,7 @@ class Publisher final : public SpanSink, public CourseSink {
   explicit Publisher(Track& track) : track_(track) {}
 
   void put(const Piece& piece) override { pieces_.push_back(piece); }
-  void put(const Span& span, bool revised, bool more) override;
+  void put(const Span& span) override;
   void begin_course() override;
   void put(const Knot& knot) override;
   void put(const StopHint& stop) override { stops_.push_back(stop); }
@@ -48,7 +48,7 @@ class Publisher final : public SpanSink, public CourseSink {
   std::deque<Entry> entries_;
   Entry course_;                ///< that was begun last
   double course_begins_ = 0.0;  ///< s
-  double final_time_ = 0.0;     ///< running sum up to the last final span, s
+  double final_time_ = 0.0;     ///< running sum up to the last span, s
   double shown_time_ = 0.0;     ///< the same of what is in the track
 };
 

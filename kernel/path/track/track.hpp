@@ -10,7 +10,6 @@ namespace servogate::path {
 struct Entry {
   enum class Kind : std::uint8_t {
     span,     ///< `span`; its pieces are already in Track::pieces
-    revise,   ///< span.number has the terms, stop and final of `span` from now on
     course,   ///< begins with piece span.first_piece and knot first_knot, and rests where it is complete
     extend,   ///< the last course is known as far as `extent`; pieces and knots are already in the track
     event,    ///< the path rests here; report `event` and wait for release_event()
@@ -18,7 +17,6 @@ struct Entry {
     restart,  ///< the path goes on at `at` with piece span.first_piece; ends the dropping after a stop
   };
   Kind kind = Kind::span;
-  bool more = false;  ///< the next entry belongs with this one: neither may be used before both are seen
   std::uint32_t event = 0;
   Tag tag;  ///< of a marker
   Span span;

@@ -38,36 +38,15 @@ Track::Begin CourseAhead::behind() const noexcept {
   return out;
 }
 
-void Window::stage(const Entry& entry) noexcept {
-  at(staged_++) = entry;
-  if (entry.kind == Entry::Kind::course) course_ = staged_;
-  if (!entry.more) last_ = staged_;
+void Window::append(const Entry& entry) noexcept {
+  at(last_++) = entry;
+  if (entry.kind == Entry::Kind::course) course_ = last_;
 }
 
 bool Window::extend(const Entry& known) noexcept {
   if (course_ <= first_ || at(course_ - 1).kind != Entry::Kind::course) return false;
   at(course_ - 1).extent = known.extent;
   return true;
-}
-
-bool Window::revise(const Span& update) noexcept {
-  // Numbers rise along the window, and a marker carries the number of the span before it: the first entry
-  // that is not below is the span, if it is still there.
-  std::uint64_t low = first_, high = last_;
-  while (low < high) {
-    const std::uint64_t middle = low + (high - low) / 2;
-    if (at(middle).span.number < update.number)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  if (low == last_ || at(low).kind != Entry::Kind::span || at(low).span.number != update.number) return false;
-  Span& span = at(low).span;
-  span.terms = update.terms;
-  span.final = update.final;
-  span.stop = update.stop;
-  span.confirm = update.confirm;
-  return low == first_;
 }
 
 }  // namespace servogate::path

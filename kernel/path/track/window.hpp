@@ -39,36 +39,31 @@ class CourseAhead final : public CourseView {
   const Entry* course_ = nullptr;
 };
 
-/// The follower's end of the track: entries that were taken over and are not done, in order. Those of a batch
-/// are staged until the last of them is there. The constructor allocates; the rest is real-time safe.
+/// The follower's end of the track: entries that were taken over and are not done, in order. The constructor
+/// allocates; the rest is real-time safe.
 class Window final : public Ahead {
  public:
   explicit Window(const Track& track) : slots_(track.entries.capacity()) {}
 
-  bool full() const noexcept { return staged_ - first_ >= slots_.size(); }
+  bool full() const noexcept { return last_ - first_ >= slots_.size(); }
   bool empty() const noexcept { return first_ == last_; }
-  bool anything_staged() const noexcept { return staged_ != first_; }
 
-  void stage(const Entry& entry) noexcept;
+  void append(const Entry& entry) noexcept;
   /// The last course is known further. False: there is none.
   bool extend(const Entry& known) noexcept;
   /// The first entry, if it is a course.
   const Entry* course() const noexcept {
     return !empty() && front().kind == Entry::Kind::course ? &front() : nullptr;
   }
-  /// The span of that number gets its new terms. True when it is the first entry.
-  bool revise(const Span& update) noexcept;
   const Entry& front() const noexcept { return slots_[front_]; }
   void pop() noexcept {
     ++first_;
     front_ = front_ + 1 < slots_.size() ? front_ + 1 : 0;
   }
   void clear() noexcept {
-    first_ = last_ = staged_;
+    first_ = last_;
     front_ = first_ % slots_.size();
   }
-  /// Everything staged counts as there, batch or not: it will not be driven.
-  void release() noexcept { last_ = staged_; }
 
   const Span* span(int n) const noexcept override {
     const auto beyond = static_cast<std::uint64_t>(n);
@@ -83,7 +78,6 @@ class Window final : public Ahead {
 
   std::vector<Entry> slots_;            ///< a ring
   std::uint64_t first_ = 0, last_ = 0;  ///< entries in use
-  std::uint64_t staged_ = 0;            ///< end of those that wait for the rest of their batch, >= last_
   std::uint64_t front_ = 0;             ///< slot of the first
   std::uint64_t course_ = 0;            ///< number of the last course, + 1; 0: none
 };
