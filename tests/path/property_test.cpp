@@ -13,7 +13,7 @@ namespace {
 
 int cases() {
   if (const char* given = std::getenv("SERVOGATE_PROPERTY_CASES")) return std::atoi(given);
-  return 400;
+  return 300;
 }
 
 Scenario scenario(std::uint64_t seed) {
@@ -82,7 +82,7 @@ TEST(RandomPrograms, end_behind_a_long_line_at_the_velocity_of_its_axis) {
 TEST(RandomPrograms, of_many_short_blocks_keep_them_too_when_held_over_and_over) {
   const std::uint64_t base = servogate::test::property_seed();
   int wrong = 0;
-  for (int k = 0; k < cases() / 40 && wrong < 10; ++k) {
+  for (int k = 0; k < cases() / 50 && wrong < 10; ++k) {
     const std::uint64_t seed = base + static_cast<std::uint64_t>(k);
     RandomProgram program = random_program(seed, {120, false, false});
     for (Element& e : program.elements) e.feed = std::max(e.feed, 60.0);  // so that it ends in minutes

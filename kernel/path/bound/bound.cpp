@@ -113,6 +113,35 @@ double jerk_left(const Rows& rows, double v, double a) {
   return j;
 }
 
+/// Largest speed of the vector over mm and degrees for a parameter speed of 1.
+double path_rate(const Config& config, const Piece& p) {
+  if (p.shape != Piece::Shape::blend)
+    return p.shape == Piece::Shape::arc ? std::hypot(1.0, p.radius_slope) : 1.0;
+  // The derivative of a Bézier curve stays in the hull of its control differences.
+  double worst = 0.0;
+  const auto control = [&](int i, int k) {
+    const double c1 = p.c1[i], c2 = p.c2[i], c3 = p.c3[i], c4 = p.c4[i];
+    switch (k) {
+      case 0:
+        return c1;
+      case 1:
+        return c1 + c2 / 2.0;
+      case 2:
+        return c1 + c2 + c3 / 2.0;
+      case 3:
+        return c1 + 1.5 * c2 + 1.5 * c3 + c4;
+      default:
+        return c1 + 2 * c2 + 3 * c3 + 4 * c4 + 5 * p.c5[i];
+    }
+  };
+  for (int k = 0; k < 5; ++k) {
+    double square = 0.0;
+    for (int i = 0; i < config.axis_count; ++i) square += control(i, k) * control(i, k);
+    worst = std::max(worst, std::sqrt(square) / p.full);
+  }
+  return std::max(1.0, worst);
+}
+
 }  // namespace
 
 Box box(const Config& config, const Piece& piece, double velocity_cap) {
@@ -144,34 +173,6 @@ Box box(const Config& config, const Piece& piece, double velocity_cap) {
     out.jerk = j;
   }
   return out;
-}
-
-double path_rate(const Config& config, const Piece& p) {
-  if (p.shape != Piece::Shape::blend)
-    return p.shape == Piece::Shape::arc ? std::hypot(1.0, p.radius_slope) : 1.0;
-  // The derivative of a Bézier curve stays in the hull of its control differences.
-  double worst = 0.0;
-  const auto control = [&](int i, int k) {
-    const double c1 = p.c1[i], c2 = p.c2[i], c3 = p.c3[i], c4 = p.c4[i];
-    switch (k) {
-      case 0:
-        return c1;
-      case 1:
-        return c1 + c2 / 2.0;
-      case 2:
-        return c1 + c2 + c3 / 2.0;
-      case 3:
-        return c1 + 1.5 * c2 + 1.5 * c3 + c4;
-      default:
-        return c1 + 2 * c2 + 3 * c3 + 4 * c4 + 5 * p.c5[i];
-    }
-  };
-  for (int k = 0; k < 5; ++k) {
-    double square = 0.0;
-    for (int i = 0; i < config.axis_count; ++i) square += control(i, k) * control(i, k);
-    worst = std::max(worst, std::sqrt(square) / p.full);
-  }
-  return std::max(1.0, worst);
 }
 
 Bound bound(const Config& config, const Piece& piece, const Element& e) {

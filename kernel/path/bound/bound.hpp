@@ -28,9 +28,6 @@ struct Bound {
 /// The box of a piece whose speed will not exceed `velocity_cap` (infinite: as fast as the limits).
 Box box(const Config& config, const Piece& piece, double velocity_cap);
 
-/// Largest speed of the vector over mm and degrees for a parameter speed of 1.
-double path_rate(const Config& config, const Piece& piece);
-
 /// Box and feed of a piece that is driven as `element` says.
 Bound bound(const Config& config, const Piece& piece, const Element& element);
 

@@ -57,7 +57,7 @@ void MasterMotion::take_spans(const Ahead& ahead) noexcept {
 }
 
 void MasterMotion::add_segment(const Span& span) noexcept {
-  const Terms& terms = span.terms;
+  const Bound& terms = span.terms;
   Segment& g = segments_[static_cast<std::size_t>(count_)];
   g = {};
   g.begin = length_;

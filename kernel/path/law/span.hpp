@@ -6,12 +6,6 @@
 
 namespace servogate::path {
 
-/// How fast a span may be driven; nobody outside of the law looks into it.
-struct Terms {
-  Box box;
-  Feed feed;
-};
-
 /// A stretch of pieces that the law treats as one: an element from rest to rest, or a part of a chain of
 /// threads. What is published is final.
 struct Span {
@@ -22,7 +16,7 @@ struct Span {
   bool confirm = false;  ///< and goes on after Follower::release_stop()
   double length = 0.0;
   double time = 0.0;  ///< running sum of the shortest times up to the end, s
-  Terms terms;
+  Bound terms;        ///< the least of its pieces; nobody outside of the law looks into it
 };
 
 /// Where the law outside the cycle puts what it has decided, in order.
