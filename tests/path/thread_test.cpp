@@ -105,6 +105,70 @@ TEST(Thread, chain_goes_on_without_a_rest_and_without_losing_its_angle) {
   EXPECT_LE(m.limits(), 1.001);
 }
 
+TEST(Thread, chain_says_in_the_middle_of_its_corner_that_the_next_part_is_in_motion_and_its_mark_is_passed) {
+  Lathe m;
+  m.lead = 1.5;
+  Element straight = thread_to(0, -30, 1.5), cone = thread_to(3, -60, 1.5);
+  cone.lock.per_turn = 1.5 * std::hypot(3.0, 30.0) / 30.0;
+  straight.tag.line = 1;
+  cone.tag.line = 2;
+  m.add(straight);
+  m.planner.add_mark();
+  m.add(cone);
+  m.planner.finish();
+  double line_at = 0.0, passed_at = 0.0;
+  std::uint32_t passed = 0;
+  ASSERT_TRUE(m.until([&](const Sample& s) {
+    passed += s.passed;
+    if (s.passed > 0) passed_at = s.position[2];
+    if (s.tag.line == 2 && line_at == 0.0) line_at = s.position[2];
+    return s.state == FollowerState::idle;
+  }));
+  EXPECT_EQ(passed, 1u);
+  EXPECT_NEAR(passed_at, -30.0, 0.03) << "two cycles";
+  EXPECT_NEAR(line_at, -30.0, 0.03);
+  EXPECT_LE(m.limits(), 1.001);
+}
+
+TEST(Thread, chain_of_short_lines_along_a_curve_is_smoothed_inside_of_its_tolerance_and_keeps_its_speed) {
+  constexpr double kRadius = 50.0, kStep = 0.002;  // lines of 0.1 mm
+  Lathe m;
+  m.spindle.wanted = m.spindle.w = 12.0;
+  std::vector<Element> lines;
+  for (int n = 1; n <= 600; ++n) {
+    const double a = kStep * n;
+    lines.push_back(thread_to(kRadius * (1.0 - std::cos(a)), -kRadius * std::sin(a), 2.0, 720.0));
+    m.add(lines.back());
+  }
+  ASSERT_TRUE(m.finish()) << m.why();
+  EXPECT_EQ(m.why(), "no fault");
+  Polyline driven;
+  double fastest = 0.0;
+  for (const Sample& s : m.trip.samples) {
+    driven.push_back(s.position);
+    fastest = std::max(fastest, s.feed);
+  }
+  EXPECT_NEAR(fastest, 24.0, 1.0) << "corner by corner the axes allow 18 mm/s";
+  EXPECT_TRUE(frechet_within(driven, programmed_path({}, lines, 3), 0.0201, 3));
+  EXPECT_LE(m.limits(), 1.001);
+}
+
+TEST(Thread, chain_that_leads_back_rests_there_and_finds_its_angle_again) {
+  Lathe m;
+  m.lead = 1.5;
+  m.add(thread_to(0, -30, 1.5));
+  m.add(thread_to(0, -1, 1.5));
+  m.planner.finish();
+  bool rested = false;
+  ASSERT_TRUE(m.until([&](const Sample& s) {
+    rested = rested || (s.feed == 0.0 && std::abs(s.position[2] + 30.0) < 1e-9);
+    return s.state == FollowerState::idle;
+  }));
+  EXPECT_TRUE(rested);
+  EXPECT_NEAR(m.trip.samples.back().position[2], -1.0, 1e-9);
+  EXPECT_LE(m.limits(), 1.001);
+}
+
 TEST(Thread, chain_of_two_leads_settles_on_the_second_one_inside_of_the_limits) {
   Lathe m;
   m.add(thread_to(0, -30, 1.0));
