@@ -52,7 +52,10 @@ class Reader final : public path::RunSink, public path::KnotSink {
   void rest() override { take_run(); }
   void cruise(const path::Cruise& cruise) override;
   void move(const path::Move& move) override;
-  void work() { pipeline_.work(); }
+  void work() {
+    while (pipeline_.work()) {
+    }
+  }
   const path::Pipeline::Counts& counts() const { return pipeline_.counts(); }
   double looking = 0.0;  ///< s that looking at the set-points took
 
@@ -163,6 +166,7 @@ Times row(const Work& work) {
     if (++n % 50 == 0) reader.work();
   }
   gather.finish();
+  reader.work();
   const double cost = now() - begin - reader.looking;
   const path::Pipeline::Counts& counts = reader.counts();
   const double seconds = reader.seconds(), aim = work.aim > 0.0 ? work.aim : 1.04 * work.optimum;

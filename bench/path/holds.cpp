@@ -26,6 +26,8 @@ class OneRun final : public path::RunSink, public path::KnotSink, public path::C
     gather.restart({});
     for (const path::Element& e : program) gather.add(e);
     gather.finish();
+    while (pipeline_.work()) {
+    }
   }
   static path::Pipeline::Settings settings(const path::Config& config, double reserve) {
     path::Pipeline::Settings s;

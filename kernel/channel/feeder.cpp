@@ -2,7 +2,6 @@
 #include "kernel/channel/feeder.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
@@ -91,9 +90,9 @@ program::Interpreter Feeder::manual_interpreter(const program::Position& at) con
 bool Feeder::work() {
   take_orders();
   supply();
-  read_and_plan(kCommandsPerWork, std::numeric_limits<double>::infinity());
+  read_and_plan(kCommandsPerWork, std::nullopt);
   ways_.work();
-  return wants_more();
+  return wants_more() || planner_.ends();
 }
 
 Reading Feeder::reading(std::optional<double> driven) const {
@@ -123,13 +122,17 @@ void Feeder::work_beside(double seconds) {
   read_and_plan(kWorksBeside * kCommandsPerWork, planner_.planned() + kPlannedBeside * seconds);
 }
 
-void Feeder::read_and_plan(int commands, double planned) {
+void Feeder::read_and_plan(int commands, std::optional<double> planned) {
   // What is read is planned at once: a few long elements are enough, and the planner wants nothing while it
-  // has something to publish.
-  planner_.work();
-  for (int n = 0; n < commands && wants_more() && planner_.planned() < planned; ++n) {
-    read_one();
-    planner_.work();
+  // has something to publish. A window of a course that
+  // may wait is left to the next call.
+  const auto enough = [&](bool more) {
+    return planned ? planner_.planned() >= *planned : more && planner_.ahead(std::nullopt) >= kAmple;
+  };
+  bool more = planner_.work_a_little();
+  for (int n = 0; n < commands && (more || wants_more()) && !enough(more); ++n) {
+    if (!more) read_one();
+    more = planner_.work_a_little();
   }
   warn_of_rest();
 }

@@ -138,9 +138,11 @@ class Feeder {
   const Touches& touches() const noexcept { return touches_; }
   /// All that its measuring motions have found.
   const TouchLog& touch_log() const noexcept { return touch_log_; }
-  /// A run is being read or about to be: load() has to wait. False once its last motion has been read.
+  /// A run is being read or about to be: load() has to wait. False once its last motion has been read
+  /// and planned.
   bool reads() const noexcept {
-    return state_ == State::feeding || state_ == State::syncing || state_ == State::probing || ordered();
+    return state_ == State::feeding || state_ == State::syncing || state_ == State::probing || ordered() ||
+           (state_ == State::ended && planner_.ends());
   }
   bool loaded() const noexcept { return static_cast<bool>(factory_); }
   /// The machine has so many processes, and programs of others come from there. Before the first program.
@@ -185,8 +187,8 @@ class Feeder {
   enum class State { idle, feeding, syncing, probing, ended };
 
   bool wants_more() const;
-  /// Up to so many commands, until so much is planned.
-  void read_and_plan(int commands, double planned);
+  /// Up to so many commands, until so much is planned; nullopt: until nothing is left to do for now.
+  void read_and_plan(int commands, std::optional<double> planned);
   void take_orders();
   void begin(const FeederOrder& order);
   void read_one();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -80,7 +81,6 @@ struct Planner::Impl final : ChainSink {
     entry.kind = kind;
     entry.event = event;
     entry.tag = tag;
-    entry.tag.marks = marks;
     entry.at = at;
     entry.span.first_piece = publisher.next().piece;
     publisher.put(entry);
@@ -101,12 +101,25 @@ struct Planner::Impl final : ChainSink {
     double begin;  ///< path parameter of the course
   };
 
-  bool add(const Element& e);
-  void take(const Element& e, const Piece& piece);
+  /// Does it now, or behind a rest that is not planned yet.
+  template <class What>
+  void in_turn(const What& what) {
+    if (ends)
+      behind.push_back(what);
+    else
+      what();
+  }
+  void mark_at_rest(Entry::Kind kind, std::uint32_t event, Tag tag);
+  bool plan();
+  void close_course();
+  void add(const Element& e, const Piece& piece);
+  bool take(const Element& e, const Piece& piece);
   void rest_behind(const Element& e, const Piece& piece);
   void finish();
   void forget() {
     end_run();
+    ends = false;
+    behind.clear();
     single.reset();
     unasked_rest.reset();
   }
@@ -132,7 +145,10 @@ struct Planner::Impl final : ChainSink {
   Gather gather;
   std::uint32_t marks = 0;
   Flaw flaw = Flaw::none;
-  Vector at{};  ///< end of the elements added
+  Vector added{};                            ///< end of the elements added
+  Vector at{};                               ///< the same of those that wait for nothing
+  bool ends = false;                         ///< Run::course has got its rest, and is not planned to it
+  std::deque<std::function<void()>> behind;  ///< it
   Run run = Run::none;
   std::optional<Laid> single;      ///< behind a rest; a course, if another one follows without a rest
   std::deque<OnCourse> on_course;  ///< elements that the course may not come to the end of
@@ -187,8 +203,16 @@ void Planner::Impl::put_on_course(const Element& e, const Piece& piece) {
 void Planner::Impl::pass_on(const Element& e, const Piece& piece) {
   put_on_course(e, piece);
   gather.add(e);
-  if (gather.open()) return;
-  while (fall_back()) {
+  if (!gather.open()) close_course();
+}
+
+/// The run has got its rest.
+void Planner::Impl::close_course() {
+  for (;;) {
+    ends = course->ends();
+    if (ends) return;
+    if (!fall_back()) break;
+    if (run == Run::course) gather.finish();
   }
   end_run();
 }
@@ -236,40 +260,45 @@ bool Planner::Impl::fall_back() {
   return true;
 }
 
-bool Planner::Impl::add(const Element& e) {
-  const Shaped shaped = shape(config, at, e);
-  flaw = shaped.flaw;
-  if (flaw != Flaw::none) return false;
-  if (shaped.piece.length > 0.0)
-    take(e, shaped.piece);
-  else if (!goes_on(e))
-    rest_behind(e, shaped.piece);
+void Planner::Impl::add(const Element& e, const Piece& piece) {
+  if (piece.length > 0.0) {
+    if (!take(e, piece)) return behind.push_front([this, e, piece] { add(e, piece); });
+  } else if (!goes_on(e)) {
+    rest_behind(e, piece);
+  }
   at = e.to;
-  return true;
 }
 
-/// The one place where the law is chosen: two elements and more are a course.
-void Planner::Impl::take(const Element& e, const Piece& piece) {
-  if (run == Run::course && passes_into(on_course.back().what, e, piece)) return pass_on(e, piece);
+/// The one place where the law is chosen: two elements and more are a course. False: it needs a rest before
+/// it that is not planned yet.
+bool Planner::Impl::take(const Element& e, const Piece& piece) {
+  if (run == Run::course && passes_into(on_course.back().what, e, piece)) {
+    pass_on(e, piece);
+    return true;
+  }
   if (single && passes_into(*single, e, piece)) {
     const Laid before = *std::exchange(single, std::nullopt);
     begin_course(path::position(before.piece, 0.0, config.axis_count));
     pass_on(before.element, before.piece);
-    return pass_on(e, piece);
+    pass_on(e, piece);
+    return true;
   }
   const bool thread = e.lock.kind == Lock::Kind::thread;
   if (!thread || run != Run::threads) finish();
-  if (e.lock.kind > Lock::Kind::thread) return drive_alone(e, piece, false);
-  if (!thread) {
+  if (ends) return false;
+  if (e.lock.kind > Lock::Kind::thread) {
+    drive_alone(e, piece, false);
+  } else if (!thread) {
     single = {e, piece};
-    return;
+  } else {
+    if (run != Run::threads) {
+      run = Run::threads;
+      chain.restart(at);
+      law.begin_at(publisher.next().piece, publisher.planned());
+    }
+    chain.add(e);
   }
-  if (run != Run::threads) {
-    run = Run::threads;
-    chain.restart(at);
-    law.begin_at(publisher.next().piece, publisher.planned());
-  }
-  chain.add(e);
+  return true;
 }
 
 /// The element moves nothing and decides how the one before ends.
@@ -286,13 +315,38 @@ void Planner::Impl::rest_behind(const Element& e, const Piece& piece) {
 }
 
 void Planner::Impl::finish() {
+  if (ends) return;
   if (single) drive(*std::exchange(single, std::nullopt));
+  if (ends) return;
   if (run == Run::threads) chain.finish();
-  while (run == Run::course) {
-    gather.finish();
-    if (!fall_back()) break;
+  if (run != Run::course) return end_run();
+  gather.finish();
+  close_course();
+}
+
+void Planner::Impl::mark_at_rest(Entry::Kind kind, std::uint32_t event, Tag tag) {
+  tag.marks = marks;
+  in_turn([this, kind, event, tag] {
+    finish();
+    if (ends)
+      behind.push_front([this, kind, event, tag] { mark(kind, event, tag); });
+    else
+      mark(kind, event, tag);
+  });
+}
+
+/// A window at most, and what waits behind a rest that is planned now. False: nothing was to be done.
+bool Planner::Impl::plan() {
+  const bool worked = course->work();
+  if (!ends) return fall_back() || worked;
+  if (course->ends()) return worked;
+  close_course();
+  while (!ends && !behind.empty()) {
+    const std::function<void()> next = std::move(behind.front());
+    behind.pop_front();
+    next();
   }
-  end_run();
+  return true;
 }
 
 Planner::Planner(const Config& config, Track& track, MomentSink* forecast)
@@ -302,52 +356,67 @@ Planner::~Planner() = default;
 Track::Begin Planner::restart(const Vector& at) {
   Impl& p = *impl_;
   const Track::Begin begin = p.publisher.next();
+  p.contour.restart(at);
   p.law.restart();
   p.course->restart();
   p.forget();
-  p.at = at;
-  p.mark(Entry::Kind::restart, 0, {});
+  p.at = p.added = at;
+  Tag tag;
+  tag.marks = p.marks;
+  p.mark(Entry::Kind::restart, 0, tag);
   return begin;
 }
 
 bool Planner::add(const Element& element) {
+  Impl& p = *impl_;
+  const Shaped shaped = shape(p.config, p.added, element);
+  p.flaw = shaped.flaw;
+  if (p.flaw != Flaw::none) return false;
   Element marked = element;
-  marked.tag.marks = impl_->marks;
-  return impl_->add(marked);
+  marked.tag.marks = p.marks;
+  p.added = element.to;
+  p.in_turn([&p, marked, piece = shaped.piece] { p.add(marked, piece); });
+  return true;
 }
 
 Flaw Planner::last_flaw() const { return impl_->flaw; }
 
 std::optional<Tag> Planner::take_unasked_rest() { return std::exchange(impl_->unasked_rest, std::nullopt); }
 
-void Planner::rest() { impl_->finish(); }
+void Planner::rest() {
+  impl_->in_turn([this] { impl_->finish(); });
+}
 
 void Planner::add_mark() { ++impl_->marks; }
 
 void Planner::add_event(std::uint32_t id, const Tag& tag) {
-  impl_->finish();
-  impl_->mark(Entry::Kind::event, id, tag);
+  impl_->mark_at_rest(Entry::Kind::event, id, tag);
 }
 
-void Planner::finish() {
-  impl_->finish();
-  impl_->mark(Entry::Kind::finish, 0, {});
-}
+void Planner::finish() { impl_->mark_at_rest(Entry::Kind::finish, 0, {}); }
 
-bool Planner::wants_more() const { return impl_->publisher.wants_more(); }
+bool Planner::wants_more() const { return !impl_->ends && impl_->publisher.wants_more(); }
 
-bool Planner::waits() const { return impl_->publisher.waits(); }
+bool Planner::ends() const { return impl_->ends; }
+
+bool Planner::waits() const { return impl_->ends || impl_->publisher.waits(); }
 
 double Planner::ahead(std::optional<double> driven) const { return impl_->publisher.ahead(driven); }
 
 double Planner::planned() const { return impl_->publisher.planned(); }
 
 void Planner::work() {
-  impl_->course->work();
-  impl_->fall_back();
+  while (impl_->plan()) {
+  }
   impl_->publisher.work();
 }
 
-const Vector& Planner::position() const { return impl_->at; }
+bool Planner::work_a_little() {
+  const bool worked = impl_->plan();
+  impl_->publisher.work();
+  return worked;
+}
+
+const Vector& Planner::position() const { return impl_->added; }
 
 }  // namespace servogate::path

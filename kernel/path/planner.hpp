@@ -34,7 +34,7 @@ class Planner {
   /// The element inside of which the path comes to rest although its program does not ask for it, the newest
   /// one since the last call: no law of a course inside of the limits was found for what comes next, and
   /// some elements behind that place are driven from rest to rest. May be known long after the element was
-  /// added, and is known for certain behind rest().
+  /// added, and is known for certain behind rest() and work().
   std::optional<Tag> take_unasked_rest();
 
   /// A mark in the end point of the elements before, which the motion passes without a rest: the follower
@@ -56,11 +56,19 @@ class Planner {
   /// holds): call add() when true. add() works all the same when false; it only costs memory.
   bool wants_more() const;
 
-  /// Publishes what is planned and has room in the track. Call it after add() and regularly while
-  /// wants_more() is false. Bounded by the capacity of the track.
+  /// Plans what can be planned, and publishes what has room in the track. Call it after add() and regularly
+  /// while wants_more() is false.
   void work();
 
-  /// Something waits for room in the track.
+  /// As work(), but plans one window of it at most: a second of motion, about. True: there may be more to
+  /// plan now. What is published in the end is the same.
+  bool work_a_little();
+
+  /// The path has got a rest that is not planned yet; what was added behind it waits. It is planned by
+  /// work(), and needs nothing else.
+  bool ends() const;
+
+  /// Something waits for room in the track, or behind a rest that is not planned yet.
   bool waits() const;
   /// For how long what is in the track moves at an override of 100 %, s; 0: not at all, or it is not known.
   /// `driven`: Follower::driven().

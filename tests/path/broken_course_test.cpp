@@ -49,6 +49,7 @@ TEST(BrokenCourse, without_a_law_for_what_comes_next_rests_says_where_and_goes_o
       ask();
     }
     m.planner.finish();
+    m.planner.work();
     ask();
     ASSERT_TRUE(rest.has_value()) << "which block it rests in";
     EXPECT_GT(rest->line, 300);
@@ -211,6 +212,8 @@ TEST(BrokenCourse, that_is_broken_rests_in_one_place_however_it_is_held_and_what
     gather.restart({});
     for (int k = 1; k <= 1200; ++k) gather.add(line_to(k * 0.3, 3 * std::sin(k * 0.05), 0, 100));
     gather.finish();
+    while (course.work()) {
+    }
     marker.kind = Entry::Kind::event;
     marker.event = 7;
     publisher.put(marker);

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 
 #include "tests/property_seed.hpp"
 
@@ -156,6 +157,49 @@ TEST(Course, does_not_depend_on_when_elements_come) {
   }
 }
 
+/// Takes knots of one run.
+class Taker final : public KnotSink {
+ public:
+  void begin(const Vector& before_last, const Vector& last) override { stage.before = {before_last, last}; }
+  void put(const Knot& knot) override { stage.knots.push_back(knot); }
+  void rest() override { ++rests; }
+  void cruise(const Cruise&) override {}
+  void move(const Move&) override {}
+  Stage stage;
+  int rests = 0;
+};
+
+TEST(Course, is_planned_by_no_more_than_a_window_a_call_even_where_all_of_it_is_known_at_once) {
+  const RandomProgram p = around(3000);
+  const Course all = plan(p, 5);
+  Taker taker;
+  Pipeline::Settings settings;
+  Pipeline pipeline(settings, taker);
+  Vector at{};
+  for (const Element& e : p.elements) {
+    Leg leg;
+    leg.piece = shape(p.config, at, e).piece;
+    leg.feed = e.feed;
+    leg.limits = &p.config.limits;
+    leg.tolerance = 0.01;
+    pipeline.add(leg);
+    at = e.to;
+  }
+  pipeline.end();
+  std::size_t most = 0, calls = 0, before = 0;
+  std::int64_t windows = 0;
+  for (; pipeline.work(); ++calls) {
+    most = std::max(most, taker.stage.knots.size() - std::exchange(before, taker.stage.knots.size()));
+    ASSERT_LE(pipeline.counts().windows - std::exchange(windows, pipeline.counts().windows), 1);
+  }
+  EXPECT_EQ(taker.rests, 1);
+  EXPECT_GT(taker.stage.knots.size(), 3000u);
+  EXPECT_LE(most, 800u);                                 // of the longest window of the law, less its overlap
+  EXPECT_GE(calls, 4 * taker.stage.knots.size() / 300);  // two curves and two laws
+  ASSERT_EQ(all.runs.size(), 1u);
+  EXPECT_NEAR(taker.stage.seconds(), all.seconds(), 0.01);  // Gather leaves some of the tolerance
+}
+
 TEST(Course, of_a_long_program_keeps_no_more_than_its_windows) {
   const std::size_t some = plan(around(3000), 5).most_kept, many = plan(around(6000), 5).most_kept;
   EXPECT_LE(many, some + some / 5);
@@ -242,17 +286,6 @@ TEST(Course, of_long_lines_cruises_in_their_middle_at_no_cost) {
   }
 }
 
-/// Takes knots of one run.
-class Taker final : public KnotSink {
- public:
-  void begin(const Vector& before_last, const Vector& last) override { stage.before = {before_last, last}; }
-  void put(const Knot& knot) override { stage.knots.push_back(knot); }
-  void rest() override {}
-  void cruise(const Cruise&) override {}
-  void move(const Move&) override {}
-  Stage stage;
-};
-
 TEST(Course, keeps_limits_and_tolerances_that_change_along_the_path) {
   // A circle in chords: three axes alike, then an axis that is slower, then a smaller tolerance.
   Config config = mill();
@@ -273,10 +306,13 @@ TEST(Course, keeps_limits_and_tolerances_that_change_along_the_path) {
     leg.limits = i > 200 && i <= 400 ? &slow : &config.limits;
     leg.tolerance = i > 500 ? 0.002 : 0.01;
     pipeline.add(leg);
-    if (i % 10 == 0) pipeline.work();
+    while (i % 10 == 0 && pipeline.work()) {
+    }
     path.push_back(at = e.to);
   }
   pipeline.end();
+  while (pipeline.work()) {
+  }
   EXPECT_EQ(pipeline.counts().failed, 0);
   EXPECT_EQ(pipeline.counts().outside, 0);
   Course course;

@@ -10,8 +10,11 @@ namespace servogate::path {
 class CourseLaw : public RunSink {
  public:
   virtual ~CourseLaw() = default;
-  /// Plans what can be planned.
-  virtual void work() = 0;
+  /// Plans a window of what can be planned. False: nothing was to be done.
+  virtual bool work() = 0;
+  /// The course in work has got its rest, and is not given as far as that: call work(), and put nothing
+  /// before.
+  virtual bool ends() const = 0;
   /// There is no law inside of the limits for what comes next: what was given rests before it, and nothing
   /// more is given, until restart().
   virtual bool broken() const = 0;

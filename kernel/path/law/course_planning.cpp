@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace servogate::path {
 namespace {
@@ -33,11 +34,15 @@ void CoursePlanning::restart() {
   extent_ = {};
   pieces_.clear();
   begun_ = joins_ = broken_ = false;
+  confirm_.reset();
+  cruises_.clear();
 }
 
-void CoursePlanning::work() {
-  pipeline_.work();
+bool CoursePlanning::work() {
+  if (broken_) return false;
+  const bool worked = pipeline_.work();
   look_for_break();
+  return worked;
 }
 
 /// The motion stops where the last stop that is known leads to.
@@ -84,22 +89,25 @@ void CoursePlanning::cruise(const Leg& leg, double speed) {
   if (broken_) return;
   const double behind = length_;
   place(leg);
-  cruised_ = length_ - behind;
+  cruises_.push_back({behind, length_});
   pipeline_.cruise(leg, speed);
-  look_for_break();
-  section_ = length_;
 }
 
 void CoursePlanning::rest(bool confirm) {
   if (!begun_ || broken_) return;
+  confirm_ = confirm;
   pipeline_.end();
+}
+
+/// All knots of the course are here.
+void CoursePlanning::rest() {
   look_for_break();
   if (broken_) return;
   view_.complete = true;
   find_stops();
   const Knot& last = *view_.knot(view_.last());
   extent_.complete = true;
-  extent_.confirm = confirm;
+  extent_.confirm = *std::exchange(confirm_, std::nullopt);
   extent_.seconds = last.t.since({});
   give();
   begun_ = joins_ = false;
@@ -128,16 +136,25 @@ void CoursePlanning::put(const Knot& knot) {
 void CoursePlanning::cruise(const Cruise& cruise) {
   look_for_break();
   if (broken_) return;
+  const Span way = cruises_.front();
+  cruises_.pop_front();
   const Knot before = *view_.knot(view_.last());
-  if (cruise.piece.shape == Piece::Shape::arc) return arc(cruise, before);
+  if (cruise.piece.shape == Piece::Shape::arc)
+    arc(cruise, before);
+  else
+    straight(cruise, before, way.end - way.begin);
+  joins_ = true;
+  section_ = way.end;
+}
+
+void CoursePlanning::straight(const Cruise& cruise, const Knot& before, double length) {
   Knot straight;
   straight.kind = Knot::Kind::straight;
   straight.t = base_ = before.t.plus(cruise.seconds);
-  straight.place = before.place + cruised_;
+  straight.place = before.place + length;
   straight.control = position(cruise.piece, cruise.piece.length, config_.axis_count);
   straight.turns = before.turns;
   append(straight);
-  joins_ = true;
 }
 
 /// An arc at constant speed needs no law, and knots only as dense as its spline is the arc.
@@ -164,7 +181,6 @@ void CoursePlanning::arc(const Cruise& cruise, const Knot& before) {
     put(knot);
   }
   base_ = view_.knot(view_.last())->t;
-  joins_ = true;
 }
 
 /// Gather makes no run of a single line; as a run it would be planned as a move.

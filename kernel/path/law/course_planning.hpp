@@ -20,7 +20,8 @@ class CoursePlanning final : public CourseLaw, private KnotSink {
   void put(const Leg& leg) override;
   void cruise(const Leg& leg, double speed) override;
   void rest(bool confirm) override;
-  void work() override;
+  bool work() override;
+  bool ends() const override { return confirm_.has_value() && !broken_; }
   bool broken() const override { return broken_; }
   Rest rest_place() const override { return rest_; }
   double sure() const override { return sure_; }
@@ -46,8 +47,9 @@ class CoursePlanning final : public CourseLaw, private KnotSink {
   };
   void begin(const Vector& before_last, const Vector& last) override;
   void put(const Knot& knot) override;
-  void rest() override {}
+  void rest() override;
   void cruise(const Cruise& cruise) override;
+  void straight(const Cruise& cruise, const Knot& before, double length);
   void arc(const Cruise& cruise, const Knot& before);
   void move(const Move& move) override;
   void place(Leg leg);
@@ -66,10 +68,14 @@ class CoursePlanning final : public CourseLaw, private KnotSink {
   bool broken_ = false;  ///< and it cannot be driven to its end
   Rest rest_;
   double sure_ = 0.0;
-  bool joins_ = false;        ///< the next run begins behind a cruise
-  double length_ = 0.0;       ///< of the legs so far
-  double section_ = 0.0;      ///< where the run in work begins
-  double cruised_ = 0.0;      ///< length of the cruise behind it
+  bool joins_ = false;           ///< the next run begins behind a cruise
+  std::optional<bool> confirm_;  ///< its rest is known: see CourseExtent
+  double length_ = 0.0;          ///< of the legs so far
+  double section_ = 0.0;         ///< where the run in work begins
+  struct Span {
+    double begin, end;
+  };
+  std::deque<Span> cruises_;  ///< behind it, and behind those that follow
   LawTime base_;              ///< the same as time
   std::deque<Piece> pieces_;  ///< that no knot given lies on yet
   std::size_t given_ = 0;     ///< knots

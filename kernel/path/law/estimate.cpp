@@ -40,16 +40,15 @@ double time_over(double y0, double y1, double h) {
 
 void ClockEstimate::clear(double step) { *this = ClockEstimate(axes_, *transformation_, step); }
 
-void ClockEstimate::work(const Run& run, bool ended, Kept<double>& places) {
-  if (done_ || run.empty()) return;
+bool ClockEstimate::work(const Run& run, bool ended, Kept<double>& places) {
+  if (done_ || run.empty()) return false;
   if (places.end() == 0) {
     places.push_back(0.0);
     begin_y_ = y_of(run.begin_speed());
   }
-  while (window(run, ended)) {
-    integrate(run, places);
-    if (decided_) return;
-  }
+  if (!window(run, ended)) return false;
+  integrate(run, places);
+  return true;
 }
 
 /// The fastest feed of the legs between, and the least limits of the axes that they move.

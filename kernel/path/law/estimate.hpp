@@ -17,9 +17,10 @@ class ClockEstimate {
   ClockEstimate(int axes, const Transformation& transformation, double step)
       : axes_(axes), transformation_(&transformation), step_(step) {}
   void clear(double step);
-  /// Appends places for all of the run that can be decided now; `ended`: it rests behind its last leg. The
-  /// first place is 0; the last one, when it is done, the run's length.
-  void work(const Run& run, bool ended, Kept<double>& places);
+  /// Appends places of one window, if all that it looks at is known; `ended`: the run rests behind its last
+  /// leg. The first place is 0; the last one, when it is done, the run's length. False: nothing was to be
+  /// done.
+  bool work(const Run& run, bool ended, Kept<double>& places);
   bool done() const { return done_; }
   /// Legs before this are no longer looked at.
   double needs_from() const { return begin_; }

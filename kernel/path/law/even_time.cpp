@@ -30,15 +30,16 @@ bool EvenTime::advance(const Kept<double>& beta, double t, std::size_t known) {
   return t <= ends_;
 }
 
-void EvenTime::work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
+bool EvenTime::work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
                     const Kept<double>& beta, bool complete, std::size_t open, Kept<double>& new_places,
                     Kept<Vector>& new_controls) {
-  if (done_ || beta.end() < 3) return;
+  if (done_ || beta.end() < 3) return false;
   if (old_step_ == 0.0) old_step_ = step_;
   const std::size_t known = beta.end() - 2, first_known = complete ? open : known;  // intervals
+  const std::size_t before = next_;
   for (; first_known > 0 && advance(beta, static_cast<double>(next_) * step_, first_known); ++next_)
     take(run, places, controls, beta, static_cast<double>(next_) * step_, new_places, new_controls);
-  if (!complete) return;
+  if (!complete) return next_ > before;
   double all = begins_;
   for (std::size_t k = at_; k < known; ++k) all += interval_time({&beta[k], 3}, 0, old_step_);
   const double exact = all / step_, fewest = static_cast<double>(kFewest);
@@ -55,7 +56,7 @@ void EvenTime::work(const Run& run, const Kept<double>& places, const Kept<Vecto
   // The rest at the end: the last point, and its controls.
   new_places.back() = run.length();
   while (new_controls.end() < new_places.end() + 2) new_controls.push_back(run.at(run.length(), leg_));
-  done_ = true;
+  return done_ = true;
 }
 
 void EvenTime::take(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,

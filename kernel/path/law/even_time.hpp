@@ -14,8 +14,8 @@ class EvenTime {
 
   /// `places`, `controls` and `beta` of the pass before, as far as they are final. `complete`: the run ends
   /// with them, and `open` of their intervals were final before that was known. Appends path parameters at
-  /// the new knots, and controls to begin with.
-  void work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
+  /// the new knots, and controls to begin with. False: nothing was to be done.
+  bool work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
             const Kept<double>& beta, bool complete, std::size_t open, Kept<double>& new_places,
             Kept<Vector>& new_controls);
   bool done() const { return done_; }

@@ -90,7 +90,8 @@ class CourseForecast final : public CourseLaw {
   void put(const Leg& leg) override;
   void cruise(const Leg& leg, double speed) override;
   void rest(bool confirm) override;
-  void work() override {}
+  bool work() override { return false; }
+  bool ends() const override { return false; }
   bool broken() const override { return false; }
   Rest rest_place() const override { return {}; }
   double sure() const override { return std::numeric_limits<double>::infinity(); }

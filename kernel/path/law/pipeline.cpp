@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kernel/path/axes/transformation.hpp"
 #include "kernel/path/law/judge.hpp"
@@ -60,34 +61,42 @@ void Pipeline::begin_run() {
   time_ = {};
 }
 
-void Pipeline::add(const Leg& leg) { run_.append(leg); }
-
-void Pipeline::end() {
-  if (run_.empty()) return;
-  if (!move_instead()) {
-    end_run(0.0);
-    sink_.rest();
-  }
-  run_.clear();
+void Pipeline::add(const Leg& leg) {
+  if (!end_) return run_.append(leg);
+  behind_.push_back({Order::Kind::leg, leg, 0.0});
 }
 
-void Pipeline::cruise(const Leg& leg, double speed) {
-  end_run(speed);
-  sink_.cruise({leg.piece, leg.piece.length / speed});
-  run_.clear(speed);
+void Pipeline::end() { take({Order::Kind::rest, {}, 0.0}); }
+
+void Pipeline::cruise(const Leg& leg, double speed) { take({Order::Kind::cruise, leg, speed}); }
+
+void Pipeline::take(const Order& order) {
+  if (end_) return behind_.push_back(order);
+  if (order.kind == Order::Kind::leg) return run_.append(order.leg);
+  if (order.kind == Order::Kind::rest && run_.empty()) return;
+  if (order.kind == Order::Kind::rest && move_instead()) return run_.clear();
+  run_.end_at(order.speed);
+  end_ = order;
+}
+
+/// All of the run is put, or there is no law for the rest of it.
+void Pipeline::close_run() {
+  for (const auto& pass : passes_) count(*pass);
+  const Order end = *std::exchange(end_, std::nullopt);
+  begun_ = false;
+  run_.clear(end.speed);
+  if (end.kind == Order::Kind::rest)
+    sink_.rest();
+  else
+    sink_.cruise({end.leg.piece, end.leg.piece.length / end.speed});
+  for (; !end_ && !behind_.empty(); behind_.pop_front()) take(behind_.front());
 }
 
 void Pipeline::abandon() {
   run_.clear();
-  begun_ = ended_ = broken_ = false;
-}
-
-void Pipeline::end_run(double speed) {
-  run_.end_at(speed);
-  ended_ = true;
-  work();
-  for (const auto& pass : passes_) count(*pass);
-  ended_ = begun_ = false;
+  begun_ = broken_ = false;
+  end_.reset();
+  behind_.clear();
 }
 
 /// A single line from rest to rest takes the closed form.
@@ -113,35 +122,52 @@ bool Pipeline::move_instead() {
   return true;
 }
 
-void Pipeline::work() {
+bool Pipeline::work() {
   // One line may be all that there is.
-  if (run_.empty() || (!begun_ && !ended_ && run_.end() - run_.first() == 1 && run_.begin_speed() == 0.0))
-    return;
+  if (!end_ && (run_.empty() || (!begun_ && run_.end() - run_.first() == 1 && run_.begin_speed() == 0.0)))
+    return false;
   if (!begun_) begin_run();
-  for (std::size_t n = 0; n < passes_.size(); ++n) work_pass(n);
-  publish();
-  forget();
+  if (!broken_ && advance()) {
+    publish();
+    forget();
+    return true;
+  }
+  if (!end_) return false;
+  close_run();
+  return true;
 }
 
-void Pipeline::work_pass(std::size_t n) {
+/// One window of the last pass that has something to do, so that what is known is put soon and little waits
+/// between the passes.
+bool Pipeline::advance() {
+  for (std::size_t n = passes_.size(); n-- > 0;)
+    if (work_pass(n)) return true;
+  return false;
+}
+
+bool Pipeline::work_pass(std::size_t n) {
   Pass& pass = *passes_[n];
-  bool complete = false;
-  if (n == 0) {
-    estimate_.work(run_, ended_, pass.places);
-    complete = estimate_.done();
-  } else {
-    const Pass& before = *passes_[n - 1];
-    const bool began = pass.places.empty();
-    pass.even.work(run_, before.places, before.controls, before.beta, before.speed.done(),
-                   before.speed.open(), pass.places, pass.start);
-    if (began && !pass.places.empty()) {
-      pass.tube.clear(pass.even.step());
-      pass.speed.clear(pass.even.step());
-    }
-    complete = pass.even.done();
+  const bool complete = n == 0 ? estimate_.done() : pass.even.done();
+  if (pass.speed.work(run_, pass.places, pass.controls, pass.tube.done(), pass.beta) ||
+      pass.tube.work(run_, pass.places, complete, pass.start, pass.controls)) {
+    ++counts_.windows;
+    return true;
   }
-  pass.tube.work(run_, pass.places, complete, pass.start, pass.controls);
-  pass.speed.work(run_, pass.places, pass.controls, pass.tube.done(), pass.beta);
+  return make_places(n);
+}
+
+bool Pipeline::make_places(std::size_t n) {
+  Pass& pass = *passes_[n];
+  if (n == 0) return estimate_.work(run_, end_.has_value(), pass.places);
+  const Pass& before = *passes_[n - 1];
+  const bool began = pass.places.empty();
+  const bool made = pass.even.work(run_, before.places, before.controls, before.beta, before.speed.done(),
+                                   before.speed.open(), pass.places, pass.start);
+  if (began && made) {
+    pass.tube.clear(pass.even.step());
+    pass.speed.clear(pass.even.step());
+  }
+  return made;
 }
 
 void Pipeline::publish() {

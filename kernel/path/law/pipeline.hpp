@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "kernel/path/law/estimate.hpp"
@@ -65,23 +68,26 @@ class Pipeline {
     std::int64_t failed = 0;    ///< windows of the last pass without a law inside of the limits
     std::int64_t repaired = 0;  ///< windows mended by the judge
     std::int64_t tube_steps = 0, law_steps = 0;  ///< of Newton's method by knots
+    std::int64_t windows = 0;                    ///< of curves and laws, in all passes
   };
 
   Pipeline(const Settings& settings, KnotSink& sink);
 
-  /// The next element, from where the one before ends.
+  /// The next element, from where the one before ends. Behind the end of a run that is not planned yet it
+  /// waits, as all that follows does.
   void add(const Leg& leg);
   /// The run rests behind the last element; the next one begins another run.
   void end();
   /// The run goes on along `leg`, a line or an arc, at a constant speed of its parameter; the next element
   /// begins another run, at that speed.
   void cruise(const Leg& leg, double speed);
-  /// Forgets the run in work.
+  /// Forgets the run in work, and what waits behind it.
   void abandon();
   /// There is no law inside of the limits for what comes next in this run; nothing more of it is put.
   bool broken() const { return broken_; }
-  /// Plans what can be planned. Call it after some elements, and after end().
-  void work();
+  /// Plans one window of the curve or of the law, where what it looks at is known, and puts what comes of it.
+  /// Call it after some elements, and after end(), until it has nothing to do: false.
+  bool work();
   const Counts& counts() const { return counts_; }
   /// Legs and knots that are kept now, for tests of memory.
   std::size_t kept() const;
@@ -96,10 +102,20 @@ class Pipeline {
     Kept<double> places, beta;
     Kept<Vector> start, controls;
   };
+  /// What comes: an element, or the end of a run.
+  struct Order {
+    enum class Kind : std::uint8_t { leg, rest, cruise };
+    Kind kind = Kind::leg;
+    Leg leg;             // not of a rest
+    double speed = 0.0;  // of a cruise
+  };
   void begin_run();
-  void end_run(double speed);
+  void take(const Order& order);
+  void close_run();
   bool move_instead();
-  void work_pass(std::size_t n);
+  bool advance();
+  bool work_pass(std::size_t n);
+  bool make_places(std::size_t n);
   void forget();
   void count(const Pass& pass);
   void publish();
@@ -109,7 +125,9 @@ class Pipeline {
   KnotSink& sink_;
   Counts counts_;
   Run run_;
-  bool ended_ = false, begun_ = false, broken_ = false;
+  bool begun_ = false, broken_ = false;
+  std::optional<Order> end_;  // of the run in work
+  std::deque<Order> behind_;  // it
   ClockEstimate estimate_;
   std::vector<std::unique_ptr<Pass>> passes_;
   std::size_t published_ = 0;  // knots

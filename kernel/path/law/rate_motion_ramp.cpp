@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -167,7 +165,6 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
                       at.since(time_) / rate_ + ramp_.seconds() < least &&
                       ramp_.verify(view, limits_, places) == Fit::fits;
     left_ += places;
-    if (getenv("DBG")) printf(" ahead knot %ld looked %d fits %d spent %d left %d seconds %.3f in %.3f least %.3f\n", (long)ahead_.knot, ahead_.looked, fits, kPlaces-places, left_, ramp_.seconds(), at.since(time_), least);
     if (!fits) continue;
     if (!ramp_.rewind(view, limits_)) break;
     ramp_at_ = ahead_.knot;

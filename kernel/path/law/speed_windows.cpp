@@ -36,10 +36,9 @@ void SpeedWindows::clear(double step) {
   rest_.clear();
 }
 
-void SpeedWindows::work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
+bool SpeedWindows::work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls,
                         bool complete, Kept<double>& beta) {
-  while (!done_ && counts_.failed == 0 && window(run, places, controls, complete, beta)) {
-  }
+  return !done_ && counts_.failed == 0 && window(run, places, controls, complete, beta);
 }
 
 /// Knots in which the fastest leg of the window comes to a stop.
@@ -88,7 +87,7 @@ bool SpeedWindows::window(const Run& run, const Kept<double>& places, const Kept
   problem_.fixed_head = from_ > 0 || run.begin_speed() > 0.0 ? 2 : 0;
   problem_.fixed_tail = last && run.end_speed() == 0.0 ? 0 : 2;
   solve(last, commit);
-  if (counts_.failed > 0) return false;  // what is final before it stays
+  if (counts_.failed > 0) return true;  // what is final before it stays
   ++made_;
   ++counts_.windows;
   counts_.steps += law_.steps();

@@ -31,8 +31,8 @@ class SpeedWindows {
   void clear(double step);
 
   /// `controls` of the curve and `places` at its knots, as far as they are final; `complete`: the run ends
-  /// with them. Appends beta that is final.
-  void work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls, bool complete,
+  /// with them. Appends beta that is final, of one window a call. False: nothing was to be done.
+  bool work(const Run& run, const Kept<double>& places, const Kept<Vector>& controls, bool complete,
             Kept<double>& beta);
   bool done() const { return done_; }
   double step() const { return settings_.step; }

@@ -24,10 +24,9 @@ void TubeWindows::clear(double step) {
   blend_.clear();
 }
 
-void TubeWindows::work(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,
+bool TubeWindows::work(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,
                        Kept<Vector>& controls) {
-  while (!done_ && window(run, places, complete, start, controls)) {
-  }
+  return !done_ && window(run, places, complete, start, controls);
 }
 
 bool TubeWindows::window(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,

@@ -28,9 +28,10 @@ class TubeWindows {
   void clear(double step);
 
   /// `places`: path parameters at knots, `complete`: the last one is the end of the run. `start`: controls to
-  /// begin with (not for the first pass). Appends controls that are final, three more than knots intervals at
-  /// the end. All of `run` from the first place on that is not committed must be kept.
-  void work(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,
+  /// begin with (not for the first pass). Appends controls that are final, those of one window a call and
+  /// three more than knots intervals at the end. All of `run` from the first place on that is not committed
+  /// must be kept. False: nothing was to be done.
+  bool work(const Run& run, const Kept<double>& places, bool complete, const Kept<Vector>& start,
             Kept<Vector>& controls);
   bool done() const { return done_; }
   /// Knots before this are no longer looked at.

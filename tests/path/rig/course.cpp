@@ -19,6 +19,10 @@ class Collector final : public RunSink, public KnotSink {
   void put(const Leg& leg) override { pipeline->add(leg); }
   void rest(bool /*confirm*/) override { pipeline->end(); }
   void cruise(const Leg& leg, double speed) override { pipeline->cruise(leg, speed); }
+  void work() {
+    while (pipeline->work()) {
+    }
+  }
   void begin(const Vector& before_last, const Vector& last) override {
     course.runs.emplace_back();
     course.runs.back().before = {before_last, last};
@@ -101,10 +105,11 @@ Course plan(const RandomProgram& program, int portion, double reserve) {
   for (const Element& e : program.elements) {
     if (!gather.add(e)) std::printf("element %d: flaw %d\n", added, static_cast<int>(gather.last_flaw()));
     if (++added % portion != 0) continue;
-    collector.pipeline->work();
+    collector.work();
     collector.course.most_kept = std::max(collector.course.most_kept, collector.pipeline->kept());
   }
   gather.finish();
+  collector.work();
   collector.course.counts = collector.pipeline->counts();
   return collector.course;
 }
