@@ -356,7 +356,6 @@ Planner::~Planner() = default;
 Track::Begin Planner::restart(const Vector& at) {
   Impl& p = *impl_;
   const Track::Begin begin = p.publisher.next();
-  p.contour.restart(at);
   p.law.restart();
   p.course->restart();
   p.forget();

@@ -147,6 +147,7 @@ TEST(BrokenCourse, that_finds_no_law_from_its_start_on_rests_behind_each_element
   DrivenPath m(p.config);
   for (const Element& e : p.elements) ASSERT_TRUE(m.planner.add(e));
   m.planner.finish();
+  m.planner.work();
   ASSERT_TRUE(m.planner.take_unasked_rest().has_value());
   ASSERT_TRUE(m.until(FollowerState::idle));
   int exact = 0, rests = 0;

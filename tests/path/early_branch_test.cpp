@@ -98,16 +98,18 @@ TEST(EarlyBranch, holds_before_in_and_behind_a_corner_in_little_more_than_the_wa
   }
 }
 
+std::vector<Element> circle(double radius) {
+  return {arc_to(2.0 * radius, 0, radius, 0, 180, kFeed), arc_to(0, 0, radius, 0, 180, kFeed)};
+}
+
 TEST(EarlyBranch, holds_on_an_arc_in_little_more_than_on_a_line) {
   struct Row {
     double radius;
     int cycles;  // of a hold at constant speed; on a line it takes 200
-    double way;  // mm; 10 on a line, and 18 while it speeds up
   };
-  for (const Row& row : {Row{200.0, 205, 19.0}, {60.0, 215, 19.0}, {40.0, 225, 20.0}}) {
+  for (const Row& row : {Row{200.0, 205}, {60.0, 215}, {40.0, 225}}) {
     SCOPED_TRACE("radius " + std::to_string(row.radius));
-    const PublishedCourse course(program(
-        {arc_to(0, 0, row.radius, 0, 180, kFeed), arc_to(2.0 * row.radius, 0, row.radius, 0, 180, kFeed)}));
+    const PublishedCourse course(program(circle(row.radius)));
     ASSERT_TRUE(course.whole());
     Along along(course);
     for (int k = 0; k < 300; ++k) along.step(1.0);
@@ -123,7 +125,7 @@ TEST(EarlyBranch, holds_on_an_arc_in_little_more_than_on_a_line) {
 }
 
 TEST(EarlyBranch, holds_on_an_arc_while_it_speeds_up_in_the_next_cycle) {
-  const PublishedCourse course(program({arc_to(0, 0, 60, 0, 180, kFeed), arc_to(120, 0, 60, 0, 180, kFeed)}));
+  const PublishedCourse course(program(circle(60)));
   ASSERT_TRUE(course.whole());
   Along along(course);
   for (int k = 0; k < 250; ++k, along.step(1.0)) {
