@@ -124,10 +124,11 @@ void Feeder::work_beside(double seconds) {
 
 void Feeder::read_and_plan(int commands, std::optional<double> planned) {
   // What is read is planned at once: a few long elements are enough, and the planner wants nothing while it
-  // has something to publish. A window of a course that
-  // may wait is left to the next call.
+  // has something to publish. Windows of a course that may wait are left to the next call, if there will be
+  // one: work() says so.
   const auto enough = [&](bool more) {
-    return planned ? planner_.planned() >= *planned : more && planner_.ahead(std::nullopt) >= kAmple;
+    if (planned) return planner_.planned() >= *planned;
+    return more && (wants_more() || planner_.ends()) && planner_.ahead(std::nullopt) >= kAmple;
   };
   bool more = planner_.work_a_little();
   for (int n = 0; n < commands && (more || wants_more()) && !enough(more); ++n) {
