@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "kernel/path/law/speed_places.hpp"
@@ -11,9 +12,16 @@ namespace servogate::path {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// Barrier: factor from weight to weight, decrement to stop at.
-constexpr double kFactor = 0.2, kDecrement = 0.1;
+// Barrier: factor from weight to weight, decrement whose step is the last one: what is behind it is small.
+constexpr double kFactor = 0.2, kDecrement = 3.0, kLastDecrement = 0.1;
 constexpr int kSteps = 30;
+
+template <class Pair>
+Pair load(const double* from) {
+  Pair pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return pair;
+}
 
 }  // namespace
 
@@ -27,37 +35,47 @@ double SpeedLaw::time(std::span<const double> q) const {
   return sum * step_ / 6.0;
 }
 
-double SpeedLaw::cost(const std::vector<double>& beta, double mu) const {
-  double product = 1.0, logs = 0.0;
+/// b at knots and middles. Behind the last knot all is 1, where no limit is.
+void SpeedLaw::take_places(const std::vector<double>& beta) {
+  const std::size_t knots = whole_pairs();
+  std::copy(beta.begin(), beta.end(), q_.begin());
+  for (std::size_t k = beta.size(); k < knots + 2; ++k) q_[k] = 1.0;
+  for (std::size_t k = 0; k <= knots; ++k) knot_[k] = at_knot(&q_[k]);
+  for (std::size_t k = 0; k < knots; ++k) middle_[k] = at(kAt[1], &q_[k]);
+}
+
+double SpeedLaw::cost(const std::vector<double>& beta, double mu) {
   for (const double b : beta)
     if (!(b > 0.0)) return kInfinite;
-  for (int k = 0; k <= intervals_; ++k) {
-    const double* q = &beta[static_cast<std::size_t>(k)];
-    const double room = 1.0 - at_knot(q) / cap_[static_cast<std::size_t>(k)];
+  take_places(beta);
+  const auto n = static_cast<std::size_t>(intervals_), axes = static_cast<std::size_t>(axes_);
+  for (std::size_t k = 0; k <= n; ++k) {
+    const double room = 1.0 - knot_[k] / cap_[k];
     if (!(room > 0.0)) return kInfinite;
-    product *= room * q[0];
-    const Row* rows = &acceleration_[static_cast<std::size_t>(2 * k * axes_)];
-    for (int a = 0; a < axes_; ++a) {
-      const double e = rows[a].f[0] * q[0] + rows[a].f[1] * q[1], r = 1.0 - e * e;
-      if (!(r > 0.0)) return kInfinite;
-      product *= r;
+    room_[k] = room * beta[k];
+  }
+  room_[n + 1] = 1.0;
+  double product = 1.0, logs = 0.0;
+  for (std::size_t k = 0; k <= n; k += 2) {
+    const Pair q0 = load<Pair>(&q_[k]), q1 = load<Pair>(&q_[k + 1]), q2 = load<Pair>(&q_[k + 2]);
+    const Pair b0 = load<Pair>(&knot_[k]), b1 = load<Pair>(&middle_[k]), b2 = load<Pair>(&knot_[k + 1]);
+    Pair room = load<Pair>(&room_[k]);
+    auto inside = room > 0.0;
+    const Rows* rows = &rows_[k / 2 * axes];
+    for (std::size_t a = 0; a < axes; ++a) {
+      const Pair* f = rows[a].f;
+      const auto use = [&](std::size_t which) {
+        return f[which] * q0 + f[which + 1] * q1 + f[which + 2] * q2;
+      };
+      const Pair e0 = f[0] * q0 + f[1] * q1, e1 = use(kMiddle);
+      const Pair e2 = use(kJerk), e3 = use(kJerk + 3), e4 = use(kJerk + 6);
+      const Pair r0 = 1.0 - e0 * e0, r1 = 1.0 - e1 * e1;
+      const Pair r2 = 1.0 - e2 * e2 * b0, r3 = 1.0 - e3 * e3 * b1, r4 = 1.0 - e4 * e4 * b2;
+      inside &= (r0 > 0.0) & (r1 > 0.0) & (r2 > 0.0) & (r3 > 0.0) & (r4 > 0.0);
+      room *= r0 * r1 * (r2 * r3 * r4);
     }
-    for (int a = axes_; a < 2 * axes_ && k < intervals_; ++a) {
-      const double e = at(rows[a].f, q), r = 1.0 - e * e;
-      if (!(r > 0.0)) return kInfinite;
-      product *= r;
-    }
-    if (k < intervals_) {
-      const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
-      for (const auto& weights : kAt) {
-        const double b = at(weights, q);
-        for (int a = 0; a < axes_; ++a, ++row) {
-          const double e = at(row->f, q), r = 1.0 - e * e * b;
-          if (!(r > 0.0)) return kInfinite;
-          product *= r;
-        }
-      }
-    }
+    if (inside[0] == 0 || inside[1] == 0) return kInfinite;
+    product *= room[0] * room[1];
     if (product < 1e-100 || product > 1e100) {
       logs += std::log(product);
       product = 1.0;
@@ -71,79 +89,122 @@ double SpeedLaw::worst(std::span<const double> beta) const {
   for (int k = 0; k <= intervals_; ++k) {
     const double* q = &beta[static_cast<std::size_t>(k)];
     if (!(q[0] > 0.0)) return kInfinite;
-    most = std::max(most, 0.5 * (q[0] + q[1]) / cap_[static_cast<std::size_t>(k)]);
-    for (int a = 0; a < axes_; ++a) {
-      const Row& row = acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)];
-      most = std::max(most, std::abs(row.f[0] * q[0] + row.f[1] * q[1]));
-    }
+    most = std::max(most, at_knot(q) / cap_[static_cast<std::size_t>(k)]);
+    for (int a = 0; a < axes_; ++a) most = std::max(most, std::abs(use_at_knot(a, k, q)));
     if (k == intervals_) break;
-    for (int a = axes_; a < 2 * axes_; ++a)
-      most = std::max(most, std::abs(at(acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)].f, q)));
-    const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
-    for (const auto& weights : kAt)
-      for (int a = 0; a < axes_; ++a, ++row)
-        most = std::max(most, std::abs(at(row->f, q)) * std::sqrt(at(weights, q)));
+    for (int a = 0; a < axes_; ++a) most = std::max(most, std::abs(use(a, kMiddle, k, q)));
+    for (std::size_t place = 0; place < 3; ++place) {
+      const double root = std::sqrt(at(kAt[place], q));
+      for (int a = 0; a < axes_; ++a) most = std::max(most, std::abs(use(a, kJerk + 3 * place, k, q)) * root);
+    }
   }
   return beta.back() > 0.0 ? most : kInfinite;
 }
 
-/// Gradient and second derivatives by three beta that follow each other.
-struct SpeedLaw::Sum {
-  double g[3] = {}, h[6] = {};  // 00 01 02 11 12 22
+/// The barrier of 1 - e^2 > 0, where e changes by d.
+inline void SpeedLaw::Sums::keep(Pair d0, Pair d1, Pair d2, Pair e, double mu) {
+  const Pair r = 1.0 / (1.0 - e * e), first = 2.0 * mu * e * r, second = 2.0 * r * (mu + e * first);
+  const Pair x = second * d0, y = second * d1;
+  g0 += first * d0;
+  g1 += first * d1;
+  g2 += first * d2;
+  h00 += x * d0;
+  h01 += x * d1;
+  h02 += x * d2;
+  h11 += y * d1;
+  h12 += y * d2;
+  h22 += second * d2 * d2;
+}
 
-  void add(const double* d, double first, double second) {
-    const double x = second * d[0], y = second * d[1];
-    for (int i = 0; i < 3; ++i) {
-      g[i] += first * d[i];
-      h[i] += x * d[i];
-    }
-    h[3] += y * d[1];
-    h[4] += y * d[2];
-    h[5] += second * d[2] * d[2];
-  }
-  /// The barrier of 1 - e^2 > 0, where e changes by d.
-  void keep(const double* d, double e, double mu) {
-    const double r = 1.0 / (1.0 - e * e), first = 2.0 * mu * e * r;
-    add(d, first, 2.0 * r * (mu + e * first));
-  }
-};
+inline void SpeedLaw::Sums::keep_knot(const Pair* f, Pair e, double mu) {
+  const Pair r = 1.0 / (1.0 - e * e), first = 2.0 * mu * e * r, second = 2.0 * r * (mu + e * first);
+  const Pair x = second * f[0];
+  g0 += first * f[0];
+  g1 += first * f[1];
+  h00 += x * f[0];
+  h01 += x * f[1];
+  h11 += second * f[1] * f[1];
+}
 
-void SpeedLaw::derive_at(int k, double mu) {
-  const auto i = static_cast<std::size_t>(k);
-  const double* q = &beta_[i];
-  Sum sum;
-  const auto time = [&](int place, double b, double weight) {
-    const double r = weight / (b * std::sqrt(b));
-    sum.add(kAt[place], -0.5 * r, 0.75 * r / b);
-  };
-  time(0, at_knot(q), (k == 0 || k == intervals_ ? 1.0 : 2.0) * step_ / 6.0);
-  const double s = mu / (cap_[i] - at_knot(q));
-  sum.add(kAt[0], s, s * s / mu);
-  const Row* rows = &acceleration_[static_cast<std::size_t>(2 * k * axes_)];
-  for (int a = 0; a < axes_; ++a) sum.keep(rows[a].f, rows[a].f[0] * q[0] + rows[a].f[1] * q[1], mu);
-  if (k < intervals_) {
-    time(1, at(kAt[1], q), 4.0 * step_ / 6.0);
-    for (int a = axes_; a < 2 * axes_; ++a) sum.keep(rows[a].f, at(rows[a].f, q), mu);
-    const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
-    for (const auto& weights : kAt) {
-      const double root = std::sqrt(at(weights, q)), half = 0.5 / root;
-      for (int a = 0; a < axes_; ++a, ++row) {
-        const double f = at(row->f, q), by_root = half * f;
-        const double d[3] = {root * row->f[0] + by_root * weights[0], root * row->f[1] + by_root * weights[1],
-                             root * row->f[2] + by_root * weights[2]};
-        sum.keep(d, f * root, mu);
+/// The time, the largest b at a knot, and beta > 0.
+void SpeedLaw::derive_time(double mu) {
+  for (std::size_t k = 0; k <= whole_pairs(); ++k) {
+    knot_root_[k] = std::sqrt(knot_[k]);
+    middle_root_[k] = std::sqrt(middle_[k]);
+    knot_half_[k] = 0.5 / knot_root_[k];
+    middle_half_[k] = 0.5 / middle_root_[k];
+  }
+  constexpr const double(&w)[3] = kAt[1];
+  const int last = intervals_;
+  std::fill(sums_.begin(), sums_.end(), Sums{});
+  for (int n = 0; n <= last; ++n) {
+    const auto k = static_cast<std::size_t>(n), lane = k % 2;
+    Sums& to = sums_[k / 2];
+    // 1 / b is four times the square of what is kept, and so on.
+    const double h = knot_half_[k], weight = (n == 0 || n == last ? 1.0 : 2.0) * step_ / 6.0;
+    const double s = mu / (cap_[k] - knot_[k]), own = mu / q_[k];
+    const double first = 0.5 * (s - 4.0 * weight * h * h * h);
+    const double second = 0.25 * (s * s / mu + 24.0 * weight * h * h * h * h * h);
+    const double m = n < last ? middle_half_[k] : 0.0, cube = 4.0 * step_ / 6.0 * m * m * m;
+    const double first_m = -4.0 * cube, second_m = 24.0 * cube * m * m;
+    to.g0[lane] = first - own + first_m * w[0];
+    to.g1[lane] = first + first_m * w[1];
+    to.g2[lane] = first_m * w[2];
+    to.h00[lane] = second + own * own / mu + second_m * w[0] * w[0];
+    to.h01[lane] = second + second_m * w[0] * w[1];
+    to.h02[lane] = second_m * w[0] * w[2];
+    to.h11[lane] = second + second_m * w[1] * w[1];
+    to.h12[lane] = second_m * w[1] * w[2];
+    to.h22[lane] = second_m * w[2] * w[2];
+  }
+}
+
+void SpeedLaw::derive_limits(double mu) {
+  const auto axes = static_cast<std::size_t>(axes_);
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(intervals_); k += 2) {
+    const Pair q0 = load<Pair>(&q_[k]), q1 = load<Pair>(&q_[k + 1]), q2 = load<Pair>(&q_[k + 2]);
+    const Pair roots[3] = {load<Pair>(&knot_root_[k]), load<Pair>(&middle_root_[k]),
+                           load<Pair>(&knot_root_[k + 1])};
+    const Pair halves[3] = {load<Pair>(&knot_half_[k]), load<Pair>(&middle_half_[k]),
+                            load<Pair>(&knot_half_[k + 1])};
+    Sums sums = sums_[k / 2];
+    const Rows* rows = &rows_[k / 2 * axes];
+    for (std::size_t a = 0; a < axes; ++a) {
+      const Pair* f = rows[a].f;
+      const auto use = [&](const Pair* row) { return row[0] * q0 + row[1] * q1 + row[2] * q2; };
+      sums.keep_knot(f, f[0] * q0 + f[1] * q1, mu);
+      const Pair* middle = f + kMiddle;
+      sums.keep(middle[0], middle[1], middle[2], use(middle), mu);
+      // The jerk is what the row makes by the root of b.
+      for (std::size_t place = 0; place < 3; ++place) {
+        const Pair* row = f + kJerk + 3 * place;
+        const Pair root = roots[place], e = use(row), by = halves[place] * e;
+        const double(&w)[3] = kAt[place];
+        sums.keep(root * row[0] + by * w[0], root * row[1] + by * w[1], root * row[2] + by * w[2], e * root,
+                  mu);
       }
     }
+    sums_[k / 2] = sums;
   }
-  gradient_[i] += sum.g[0] - mu / q[0];
-  gradient_[i + 1] += sum.g[1];
-  gradient_[i + 2] += sum.g[2];
-  h0_[i] += sum.h[0] + mu / (q[0] * q[0]);
-  h1_[i] += sum.h[1];
-  h2_[i] += sum.h[2];
-  h0_[i + 1] += sum.h[3];
-  h1_[i + 1] += sum.h[4];
-  h0_[i + 2] += sum.h[5];
+}
+
+/// Sums of knots to gradient and matrix.
+void SpeedLaw::gather() {
+  const auto size = static_cast<std::size_t>(intervals_) + 2;
+  for (auto* v : {&gradient_, &h0_, &h1_, &h2_}) v->assign(size + 2, 0.0);
+  for (std::size_t k = 0; k + 1 < size; ++k) {
+    const Sums& from = sums_[k / 2];
+    const std::size_t lane = k % 2;
+    gradient_[k] += from.g0[lane];
+    gradient_[k + 1] += from.g1[lane];
+    gradient_[k + 2] += from.g2[lane];
+    h0_[k] += from.h00[lane];
+    h1_[k] += from.h01[lane];
+    h2_[k] += from.h02[lane];
+    h0_[k + 1] += from.h11[lane];
+    h1_[k + 1] += from.h12[lane];
+    h0_[k + 2] += from.h22[lane];
+  }
 }
 
 void SpeedLaw::fix(int i) {
@@ -156,11 +217,10 @@ void SpeedLaw::fix(int i) {
 }
 
 void SpeedLaw::derive(double mu) {
-  const auto size = static_cast<std::size_t>(intervals_) + 4;
-  for (auto* v : {&gradient_, &h0_, &h1_, &h2_}) v->assign(size, 0.0);
-  for (int k = 0; k <= intervals_; ++k) {
-    derive_at(k, mu);
-  }
+  take_places(beta_);
+  derive_time(mu);
+  derive_limits(mu);
+  gather();
   const auto end = static_cast<std::size_t>(intervals_) + 1;
   gradient_[end] -= mu / beta_[end];
   h0_[end] += mu / (beta_[end] * beta_[end]);
@@ -208,7 +268,6 @@ bool SpeedLaw::centre(double mu, int most, double decrement) {
     ++steps_;
     const double d = direction();
     if (!std::isfinite(d) || d < 0.0) return false;
-    if (d < decrement) return true;
     double t = 1.0, there = kInfinite;
     for (std::size_t i = 0; i < beta_.size(); ++i)
       if (move_[i] < 0.0) t = std::min(t, -0.95 * beta_[i] / move_[i]);
@@ -219,6 +278,7 @@ bool SpeedLaw::centre(double mu, int most, double decrement) {
     }
     if (!(there < now)) return true;
     beta_.swap(trial_);
+    if (d < decrement) return true;
     now = there;
   }
   return true;
@@ -227,8 +287,10 @@ bool SpeedLaw::centre(double mu, int most, double decrement) {
 bool SpeedLaw::descend(double mu, double last) {
   const double rows = row_count();
   for (int round = 0; round < 40; ++round, mu *= kFactor) {
-    if (!centre(mu, kSteps, kDecrement * mu * static_cast<double>(beta_.size()))) return false;
-    if (mu * rows < last * time(beta_)) return true;
+    const bool near = mu * rows < last * time(beta_);
+    const double decrement = near ? kLastDecrement : kDecrement;
+    if (!centre(mu, kSteps, decrement * mu * static_cast<double>(beta_.size()))) return false;
+    if (near) return true;
   }
   return true;
 }

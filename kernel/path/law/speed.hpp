@@ -67,15 +67,44 @@ class SpeedLaw {
   int steps() const { return steps_; }
 
  private:
-  struct Row {
-    double f[3];
+  /// Two knots beside each other, whose arithmetic is done at once.
+  using Pair = double __attribute__((vector_size(16)));
+  /// Factors by which beta make the limits of an axis: at a knot (two beta), in the middle behind it, and for
+  /// the jerk at start, middle and end of that interval (three each).
+  enum : std::size_t { kKnot = 0, kMiddle = 2, kJerk = 5, kFactors = 14 };
+  struct Rows {
+    Pair f[kFactors];
   };
+  /// Gradient and second derivatives by three beta that follow each other.
+  struct Sums {
+    Pair g0, g1, g2, h00, h01, h02, h11, h12, h22;
+    void keep_knot(const Pair* f, Pair e, double mu);
+    void keep(Pair d0, Pair d1, Pair d2, Pair e, double mu);
+  };
+  std::size_t whole_pairs() const { return 2 * (static_cast<std::size_t>(intervals_) / 2 + 1); }  // of knots
+  double factor(int axis, std::size_t which, int k) const {
+    return rows_[static_cast<std::size_t>(k / 2 * axes_ + axis)].f[which][k % 2];
+  }
+  void set_factor(int axis, std::size_t which, int k, double to) {
+    rows_[static_cast<std::size_t>(k / 2 * axes_ + axis)].f[which][k % 2] = to;
+  }
+  /// What beta make of a limit.
+  double use(int axis, std::size_t which, int k, const double* q) const {
+    return factor(axis, which, k) * q[0] + factor(axis, which + 1, k) * q[1] +
+           factor(axis, which + 2, k) * q[2];
+  }
+  double use_at_knot(int axis, int k, const double* q) const {
+    return factor(axis, kKnot, k) * q[0] + factor(axis, kKnot + 1, k) * q[1];
+  }
   void prepare_knot(const SpeedProblem& problem, int k);
   void prepare_interval(const SpeedProblem& problem, int k);
-  double cost(const std::vector<double>& beta, double mu) const;
+  double cost(const std::vector<double>& beta, double mu);
+  void take_places(const std::vector<double>& beta);
+  void clear_behind();
   void derive(double mu);
-  struct Sum;
-  void derive_at(int k, double mu);
+  void derive_time(double mu);
+  void derive_limits(double mu);
+  void gather();
   void fix(int i);
   double direction();
   double row_count() const { return (5.0 * axes_ + 2.0) * (intervals_ + 1); }
@@ -86,10 +115,13 @@ class SpeedLaw {
 
   int axes_ = 0, intervals_ = 0, fixed_head_ = 0, fixed_tail_ = 0, steps_ = 0;
   double step_ = 0.0;
-  std::vector<double> d1_, d2_;    // of the curve at knots
-  std::vector<double> cap_;        // of b at knots
-  std::vector<Row> acceleration_;  // by place (knot, middle, knot ...) and axis
-  std::vector<Row> jerk_;          // by interval, place (start, middle, end) and axis
+  std::vector<double> d1_, d2_;  // of the curve at knots
+  std::vector<double> cap_;      // of b at knots
+  std::vector<Rows> rows_;       // by pair of knots and axis; zero where there is none
+  // Of one beta, whole pairs of knots and what they look at behind them: beta, b at knots and in the middles,
+  // roots of b, their inverse by two, and the room that is left.
+  std::vector<double> q_, knot_, middle_, knot_root_, middle_root_, knot_half_, middle_half_, room_;
+  std::vector<Sums> sums_;
   std::vector<double> beta_, trial_, gradient_, h0_, h1_, h2_, move_;
 };
 

@@ -21,8 +21,12 @@ void SpeedLaw::prepare(const SpeedProblem& p) {
   cap_.resize(n + 1);
   d1_.resize((n + 1) * axes);
   d2_.resize((n + 1) * axes);
-  acceleration_.resize((2 * n + 1) * axes);
-  jerk_.resize(n * 3 * axes);
+  const std::size_t knots = whole_pairs();
+  rows_.assign(knots / 2 * axes, Rows{});
+  sums_.resize(knots / 2);
+  q_.resize(knots + 2);
+  for (auto* v : {&knot_, &middle_, &knot_root_, &middle_root_, &knot_half_, &middle_half_, &room_})
+    v->assign(knots + 1, 1.0);
   for (int k = 0; k <= intervals_; ++k) prepare_knot(p, k);
   for (int k = 0; k < intervals_; ++k) prepare_interval(p, k);
 }
@@ -43,8 +47,8 @@ void SpeedLaw::prepare_knot(const SpeedProblem& p, int k) {
     const auto at = static_cast<std::size_t>(k * axes_ + a);
     d1_[at] = d1;
     d2_[at] = d2;
-    acceleration_[2 * at - static_cast<std::size_t>(a)] = {
-        {s * 0.5 * (d2 - d1 * i1), s * 0.5 * (d2 + d1 * i1), 0.0}};
+    set_factor(a, kKnot, k, s * 0.5 * (d2 - d1 * i1));
+    set_factor(a, kKnot + 1, k, s * 0.5 * (d2 + d1 * i1));
   }
   if (std::isfinite(bound.feed)) cap = std::min(cap, bound.feed * bound.feed / std::max(1e-30, along));
   cap_[static_cast<std::size_t>(k)] = cap;
@@ -62,20 +66,29 @@ void SpeedLaw::prepare_interval(const SpeedProblem& p, int k) {
     const double by_acceleration = 1.0 / (p.share * std::min(here.acceleration, next.acceleration));
     const double d1 = d1_[static_cast<std::size_t>(k * axes_ + a)];
     const double d2 = d2_[static_cast<std::size_t>(k * axes_ + a)];
-    for (int place = 0; place < 3; ++place) {
+    for (std::size_t place = 0; place < 3; ++place) {
       // Jerk by sqrt(b): x''' b + 3/2 x'' b' + 1/2 x' b''.
-      const double f = 0.5 * place, e2 = d2 + f * step_ * d3,
+      const double f = 0.5 * static_cast<double>(place), e2 = d2 + f * step_ * d3,
                    e1 = d1 + f * step_ * (d2 + 0.5 * f * step_ * d3);
       const double slope[3] = {-(1.0 - f) * i1, (1.0 - 2.0 * f) * i1, f * i1};
       const double bend[3] = {i2, -2.0 * i2, i2};
-      Row& row = jerk_[static_cast<std::size_t>((k * 3 + place) * axes_ + a)];
-      for (int q = 0; q < 3; ++q)
-        row.f[q] = s * (d3 * kAt[place][q] + 1.5 * e2 * slope[q] + 0.5 * e1 * bend[q]);
+      for (std::size_t q = 0; q < 3; ++q)
+        set_factor(a, kJerk + 3 * place + q, k,
+                   s * (d3 * kAt[place][q] + 1.5 * e2 * slope[q] + 0.5 * e1 * bend[q]));
       if (place != 1) continue;
-      Row& middle = acceleration_[static_cast<std::size_t>((2 * k + 1) * axes_ + a)];
-      for (int q = 0; q < 3; ++q) middle.f[q] = by_acceleration * (e2 * kAt[1][q] + 0.5 * e1 * slope[q]);
+      for (std::size_t q = 0; q < 3; ++q)
+        set_factor(a, kMiddle + q, k, by_acceleration * (e2 * kAt[1][q] + 0.5 * e1 * slope[q]));
     }
   }
+}
+
+/// No limits behind the last knot.
+void SpeedLaw::clear_behind() {
+  const int knots = static_cast<int>(rows_.size()) / axes_ * 2;
+  for (int a = 0; a < axes_; ++a)
+    for (int k = intervals_; k < knots; ++k)
+      for (std::size_t which = k == intervals_ ? kMiddle : kKnot; which < kFactors; ++which)
+        set_factor(a, which, k, 0.0);
 }
 
 void SpeedLaw::flat_levels(std::vector<double>& levels, std::vector<double>& slopes, int intervals) {
@@ -86,20 +99,22 @@ void SpeedLaw::flat_levels(std::vector<double>& levels, std::vector<double>& slo
   for (int k = 0; k <= intervals_; ++k) {
     double& level = levels[static_cast<std::size_t>(k)];
     for (int a = 0; a < axes_; ++a) {
-      const Row& row = acceleration_[static_cast<std::size_t>(2 * k * axes_ + a)];
-      level = std::min(level, 1.0 / std::max(1e-12, std::abs(row.f[0] + row.f[1])));
+      const double f0 = factor(a, kKnot, k), f1 = factor(a, kKnot + 1, k);
+      level = std::min(level, 1.0 / std::max(1e-12, std::abs(f0 + f1)));
       double& slope = slopes[static_cast<std::size_t>(k)];
-      slope = std::min(slope, kSlopeShare / std::max(1e-12, 0.5 * std::abs(row.f[1] - row.f[0])));
+      slope = std::min(slope, kSlopeShare / std::max(1e-12, 0.5 * std::abs(f1 - f0)));
     }
     if (k == intervals_) break;
     double jerk = 1e-12;
-    const Row* row = &jerk_[static_cast<std::size_t>(k * 3 * axes_)];
-    for (int q = 0; q < 3 * axes_; ++q, ++row) jerk = std::max(jerk, std::abs(at(row->f, ones)));
+    for (int a = 0; a < axes_; ++a)
+      for (std::size_t place = 0; place < 3; ++place)
+        jerk = std::max(jerk, std::abs(use(a, kJerk + 3 * place, k, ones)));
     const double by_jerk = 1.0 / std::cbrt(jerk * jerk);
     level = std::min(level, by_jerk);
     levels[static_cast<std::size_t>(k) + 1] = std::min(levels[static_cast<std::size_t>(k) + 1], by_jerk);
   }
   intervals_ = intervals;
+  clear_behind();
 }
 
 Tightness SpeedLaw::as_they_are() const {
@@ -110,36 +125,36 @@ Tightness SpeedLaw::as_they_are() const {
 /// Shares of the limits that beta uses.
 void SpeedLaw::uses(const std::vector<double>& beta, Tightness& out) const {
   out = as_they_are();
-  const auto axes = static_cast<std::size_t>(axes_);
-  for (std::size_t k = 0; k < out.cap.size(); ++k) {
-    const double* q = &beta[k];
-    out.cap[k] = at_knot(q) / cap_[k];
+  for (int k = 0; k <= intervals_; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double* q = &beta[i];
+    out.cap[i] = at_knot(q) / cap_[i];
     double knot = 0.0, middle = 0.0, jerk = 0.0;
-    const Row* row = &acceleration_[2 * k * axes];
-    for (std::size_t a = 0; a < axes; ++a)
-      knot = std::max(knot, std::abs(row[a].f[0] * q[0] + row[a].f[1] * q[1]));
-    out.acceleration[2 * k] = knot;
-    if (k == out.jerk.size()) break;
-    for (std::size_t a = axes; a < 2 * axes; ++a) middle = std::max(middle, std::abs(at(row[a].f, q)));
-    out.acceleration[2 * k + 1] = middle;
-    row = &jerk_[k * 3 * axes];
-    for (const auto& weights : kAt)
-      for (std::size_t a = 0; a < axes; ++a, ++row)
-        jerk = std::max(jerk, std::abs(at(row->f, q)) * std::sqrt(at(weights, q)));
-    out.jerk[k] = jerk;
+    for (int a = 0; a < axes_; ++a) knot = std::max(knot, std::abs(use_at_knot(a, k, q)));
+    out.acceleration[2 * i] = knot;
+    if (k == intervals_) break;
+    for (int a = 0; a < axes_; ++a) middle = std::max(middle, std::abs(use(a, kMiddle, k, q)));
+    out.acceleration[2 * i + 1] = middle;
+    for (std::size_t place = 0; place < 3; ++place) {
+      const double root = std::sqrt(at(kAt[place], q));
+      for (int a = 0; a < axes_; ++a) jerk = std::max(jerk, std::abs(use(a, kJerk + 3 * place, k, q)) * root);
+    }
+    out.jerk[i] = jerk;
   }
 }
 
 void SpeedLaw::scale(const Tightness& by) {
-  const auto axes = static_cast<std::size_t>(axes_);
-  const auto rows = [](Row* row, std::size_t count, double factor) {
-    for (std::size_t i = 0; i < count; ++i)
-      for (double& f : row[i].f) f *= factor;
-  };
   for (std::size_t k = 0; k < by.cap.size(); ++k) cap_[k] /= by.cap[k];
-  for (std::size_t k = 0; k < by.acceleration.size(); ++k)
-    rows(&acceleration_[k * axes], axes, by.acceleration[k]);
-  for (std::size_t k = 0; k < by.jerk.size(); ++k) rows(&jerk_[k * 3 * axes], 3 * axes, by.jerk[k]);
+  for (int k = 0; k <= intervals_; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const bool interval = k < intervals_;
+    for (int a = 0; a < axes_; ++a)
+      for (std::size_t which = 0; which < (interval ? kFactors : kMiddle); ++which)
+        set_factor(a, which, k,
+                   factor(a, which, k) * (which < kMiddle ? by.acceleration[2 * i]
+                                          : which < kJerk ? by.acceleration[2 * i + 1]
+                                                          : by.jerk[i]));
+  }
 }
 
 }  // namespace servogate::path

@@ -16,6 +16,8 @@ constexpr std::size_t kLeastWindow = 256, kFirstWindow = 64, kMargin = 20;
 constexpr double kFeedShare = 0.9999;  // the feed is no limit of an axis and needs no reserve
 constexpr double kLargestExcess = 1.0005;
 constexpr double kFirst = 0.3, kFirstNear = 0.03;  // weights of the barrier to begin with
+// How near to the optimum. The law of a first pass is only a clock, and a smoother one is the better clock.
+constexpr double kGap = 0.01, kClockGap = 0.15;
 constexpr int kRepairs = 6;
 constexpr std::size_t kGlide = 24;
 constexpr std::size_t kRest = 4;    // of the overlap: fewer knots behind a window belong to it
@@ -163,7 +165,7 @@ void SpeedWindows::pack(const Kept<Vector>& controls, std::size_t to) {
   problem_.controls = controls_;
   problem_.bounds = bounds_;
   problem_.share = 1.0 - settings_.reserve;
-  problem_.gap = settings_.judged ? 0.01 : 0.03;
+  problem_.gap = settings_.judged ? kGap : kClockGap;
 }
 
 /// What the window before had behind its committed end, and slowly on: a fifth

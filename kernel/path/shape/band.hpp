@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace servogate::path {
@@ -33,9 +34,9 @@ class Band {
     for (std::size_t i = first; i < end; ++i) eliminate(i, x);
     for (std::size_t i = end; i-- > first;) {
       const Column& a = columns_[i];
-      double sum = x[i];
-      for (int d = 1; d < Width; ++d) sum -= a[d] * x[i + d];
-      x[i] = sum * a[0];
+      double even = x[i], odd = 0.0;
+      for (std::size_t d = 1; d < Width; ++d) (d % 2 == 0 ? even : odd) -= a[d] * x[i + d];
+      x[i] = (even + odd) * a[0];
     }
   }
 
@@ -43,19 +44,26 @@ class Band {
   static constexpr double kLeastPivot = 1e-12;
 
   void eliminate(std::size_t i, std::vector<double>& x) {
-    Column& a = columns_[i];
+    Column a = columns_[i];
     const double pivot = 1.0 / std::sqrt(std::max(a[0], 1e-300));
     const double y = x[i] * pivot;
     a[0] = pivot;
     x[i] = y;
-    for (int d = 1; d < Width; ++d) a[d] *= pivot;
-    for (int d = 1; d < Width; ++d) {
-      Column& behind = columns_[i + d];
-      const double factor = a[d], least = kLeastPivot * behind[0];
-      for (int e = d; e < Width; ++e) behind[e - d] -= factor * a[e];
-      behind[0] = std::max(behind[0], least);
-      x[i + d] -= factor * y;
-    }
+    for (std::size_t d = 1; d < Width; ++d) a[d] *= pivot;
+    columns_[i] = a;
+    for (std::size_t d = 1; d < Width; ++d) x[i + d] -= a[d] * y;
+    subtract(a, &columns_[i], std::make_index_sequence<Width - 1>());
+  }
+
+  template <std::size_t... Before>
+  static void subtract(const Column& a, Column* from, std::index_sequence<Before...> /*columns*/) {
+    (subtract<Before + 1>(a, from[Before + 1]), ...);
+  }
+  template <std::size_t D>
+  static void subtract(const Column& a, Column& behind) {
+    const double factor = a[D], least = kLeastPivot * behind[0];
+    for (std::size_t e = 0; e < Width - D; ++e) behind[e] -= factor * a[D + e];
+    behind[0] = std::max(behind[0], least);
   }
 
   std::vector<Column> columns_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernel/path/shape/band.hpp"
 
@@ -15,9 +16,10 @@ constexpr double kSquareShare = 0.05;  // of the square beside the eighth power
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kDifference[4] = {-1.0, 3.0, -3.0, 1.0};
 
-// Barrier: first weight as a share of objective by sites, factor, last weight, decrement to stop at.
-constexpr double kFirst = 0.05, kFirstOutside = 0.3, kFactor = 0.12, kGap = 0.3;
-constexpr double kDecrement = 0.03, kDecrementOutside = 0.003;
+// Barrier: first weight as a share of objective by sites, factor, last weight, decrement whose step is the
+// last.
+constexpr double kFirst = 0.05, kFactor = 0.12, kGap = 0.3;
+constexpr double kDecrement = 0.15, kClockDecrement = 0.5, kDecrementOutside = 0.003;
 constexpr int kRounds = 40, kSteps = 12, kStepsOutside = 4, kPatience = 14;
 
 /// The sum of logarithms, most of it as products.
@@ -59,6 +61,30 @@ class SolverOf final : public Tube::Solver {
   void derive(double mu);
   void derive_jerk();
   void derive_site(std::size_t k, double mu);
+  template <class Block, std::size_t... Axis>
+  void derive_axes(const Place& s, const Block& block, std::index_sequence<Axis...> /*axes*/) {
+    (derive_axis<Axis>(s, block), ...);
+  }
+  /// By axis `Own` of each control: its row of all controls, which a column takes from its own place on. All
+  /// lengths are known to the compiler.
+  template <std::size_t Own, class Block>
+  void derive_axis(const Place& s, const Block& block) {
+    std::array<double, 4 * A> row;
+    for (std::size_t b = 0; b < A; ++b) {
+      const double by = block(Own, b);
+      for (std::size_t r = 0; r < 4; ++r) row[r * A + b] = s.weight[r] * by;
+    }
+    auto* columns = &hessian_[s.interval * A];
+    add<Own>(s.weight[0], row, columns);
+    add<A + Own>(s.weight[1], row, columns);
+    add<2 * A + Own>(s.weight[2], row, columns);
+    add<3 * A + Own>(s.weight[3], row, columns);
+  }
+  template <std::size_t Own>
+  static void add(double weight, const std::array<double, 4 * A>& row,
+                  typename Band<4 * A>::Column* columns) {
+    for (std::size_t i = Own; i < 4 * A; ++i) columns[Own][i - Own] += weight * row[i];
+  }
   /// Distance to offset.
   void scale(std::size_t k, Point& e) const;
   double direction();
@@ -217,25 +243,12 @@ void SolverOf<A>::derive_site(std::size_t k, double mu) {
   scale(k, o);
   const double first = 2.0 * mu / room + 2.0 * s.pull, outer = 4.0 * mu / (room * room);
   const double same = first * s.scale * s.scale, more = first * s.slide * (s.slide + 2.0 * s.scale);
-  double block[A][A];
-  for (int a = 0; a < A; ++a)
-    for (int b = 0; b < A; ++b)
-      block[a][b] = outer * o[a] * o[b] + more * along_[k][a] * along_[k][b] + (a == b ? same : 0.0);
-  const std::size_t base = s.interval * A;
-  for (int a = 0; a < A; ++a) {
-    // The row of all controls by this axis of one of them; a column takes it from its own place on.
-    double row[4 * A];
-    for (int r = 0; r < 4; ++r)
-      for (int b = 0; b < A; ++b) row[r * A + b] = s.weight[r] * block[a][b];
-    const double slope = first * o[a];
-    for (int q = 0; q < 4; ++q) {
-      const int own = q * A + a;
-      const std::size_t column = base + static_cast<std::size_t>(own);
-      gradient_[column] += slope * s.weight[q];
-      double* h = hessian_[column].data();
-      for (int i = own; i < 4 * A; ++i) h[i - own] += s.weight[q] * row[i];
-    }
-  }
+  const auto block = [&](std::size_t a, std::size_t b) {
+    return outer * o[a] * o[b] + more * along_[k][a] * along_[k][b] + (a == b ? same : 0.0);
+  };
+  for (std::size_t a = 0; a < A; ++a)
+    for (std::size_t q = 0; q < 4; ++q) gradient_[(s.interval + q) * A + a] += first * o[a] * s.weight[q];
+  derive_axes(s, block, std::make_index_sequence<A>());
 }
 
 template <int A>
@@ -267,7 +280,7 @@ void SolverOf<A>::centre(double mu, double decrement, int most) {
     derive(mu);
     ++steps_;
     const double d = direction();
-    if (!(d > decrement * mu * static_cast<double>(places_.size()))) return;
+    const bool last = !(d > decrement * mu * static_cast<double>(places_.size()));
     look_along();
     double t = 1.0, there = kInfinite;
     for (; t > 1e-6; t *= 0.5)
@@ -275,6 +288,7 @@ void SolverOf<A>::centre(double mu, double decrement, int most) {
     if (!(there < now)) return;
     for (std::size_t i = problem_->first * A; i < (problem_->last + 1) * A; ++i) controls_[i] += t * step_[i];
     look();
+    if (last) return;
     now = there;
   }
 }
@@ -323,9 +337,10 @@ TubeSolution SolverOf<A>::solve(TubeProblem& problem) {
   const auto sites = static_cast<double>(std::max<std::size_t>(places_.size(), 1));
   const auto now = [&] { return std::max(objective(0.0), 1e-12); };
   std::fill(jerk_step_.begin(), jerk_step_.end(), 0.0);
-  double mu = (out ? kFirstOutside : kFirst) * now() / sites;
+  double mu = kFirst * now() / sites;
   for (int round = 0; round < kRounds; ++round) {
-    centre(mu, out ? kDecrementOutside : kDecrement, out ? kStepsOutside : kSteps);
+    const double decrement = out ? kDecrementOutside : flat_ ? kDecrement : kClockDecrement;
+    centre(mu, decrement, out ? kStepsOutside : kSteps);
     std::fill(jerk_step_.begin(), jerk_step_.end(), 0.0);
     const bool was_out = out;
     double before = 0.0, after = 0.0;
@@ -336,7 +351,7 @@ TubeSolution SolverOf<A>::solve(TubeProblem& problem) {
       continue;
     }
     if (was_out) {
-      mu = std::min(mu, kFirstOutside * now() / sites);
+      mu = std::min(mu, kFirst * now() / sites);
       continue;
     }
     if (mu * sites < kGap * now() || mu < 1e-16) break;
