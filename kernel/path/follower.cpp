@@ -122,6 +122,10 @@ void Follower::pass_markers() noexcept {
   for (int n = 0; n < kMarkersPerCycle && !wait_stop_ && !wait_event_ && !window_.empty(); ++n) {
     const Entry& entry = window_.front();
     if (dropping_ && entry.kind != Entry::Kind::restart) return drop();
+    if (entry.kind == Entry::Kind::course && entry.extent.broken && entry.extent.stops == 0) {
+      leave_broken_course();  // there is no way on it
+      continue;
+    }
     const bool way = entry.kind == Entry::Kind::span || entry.kind == Entry::Kind::course;
     if (way || !pass_marker(entry)) return;
   }

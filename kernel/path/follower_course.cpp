@@ -59,7 +59,6 @@ void Follower::begin_course(const Entry& course) noexcept {
   course_.take(course);
   const Knot* guard = course_.knot(course_.guard().knot);
   const bool enough = course_.guard().knot >= 0 && guard != nullptr && guard->t.since({}) >= kKnownAtStart;
-  if (course.extent.broken && course.extent.stops == 0) return leave_broken_course();
   if (!course.extent.complete && !course.extent.broken && !enough) return;
   in_span_ = open_ = on_course_ = true;
   piece_ = course.span.first_piece;
@@ -88,6 +87,7 @@ void Follower::leave_course() noexcept {
 /// The path goes on from the place where it rests.
 void Follower::leave_broken_course() noexcept {
   if (on_course_) sample_.position = rate_.point(course_).x;
+  course_.take(window_.front());
   window_.pop();
   in_span_ = on_course_ = false;
   motion_.rest();

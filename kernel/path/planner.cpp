@@ -51,6 +51,12 @@ bool confirms(const Element& e) {
   return e.transition.confirm && e.transition.continuation == Continuation::exact_stop;
 }
 
+/// `behind` moves nothing and decides how the element ends.
+void stop_behind(Element& e, const Element& behind) {
+  e.transition.confirm = confirms(e) || confirms(behind);
+  e.transition.continuation = Continuation::exact_stop;
+}
+
 bool suits_course(const Element& e) {
   return e.kind != Element::Kind::rapid && e.lock.kind == Lock::Kind::none;
 }
@@ -193,11 +199,13 @@ void Planner::Impl::begin_course(const Vector& from) {
 }
 
 void Planner::Impl::put_on_course(const Element& e, const Piece& piece) {
-  if (piece.length == 0.0 && goes_on(e)) return;  // it changes nothing
+  if (piece.length == 0.0) {
+    if (!goes_on(e)) stop_behind(on_course.back().what.element, e);
+    return;
+  }
   on_course.push_back({{e, piece}, course_length});
   course_length += piece.length;
-  while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= course->sure())
-    on_course.pop_front();
+  while (on_course.size() > 1 && on_course[1].begin <= course->sure()) on_course.pop_front();
 }
 
 void Planner::Impl::pass_on(const Element& e, const Piece& piece) {
@@ -215,6 +223,7 @@ void Planner::Impl::close_course() {
     if (run == Run::course) gather.finish();
   }
   end_run();
+  if (single) finish();
 }
 
 /// What is left of an element, exactly on its path; gives where it ends.
@@ -233,8 +242,7 @@ Vector Planner::Impl::drive_rest(Vector from, const std::vector<Element>& parts,
 bool Planner::Impl::fall_back() {
   if (run != Run::course || !course->broken()) return false;
   const CourseLaw::Rest rest = course->rest_place();
-  while (on_course.size() > 1 && on_course[1].what.piece.length > 0.0 && on_course[1].begin <= rest.place)
-    on_course.pop_front();
+  while (on_course.size() > 1 && on_course[1].begin <= rest.place) on_course.pop_front();
   std::deque<OnCourse> left = std::exchange(on_course, {});
   const Laid first = left.front().what;
   const double s = std::clamp(rest.place - left.front().begin, 0.0, first.piece.length);
@@ -245,14 +253,15 @@ bool Planner::Impl::fall_back() {
   for (std::size_t n = 0; n < alone && !left.empty(); ++n) {
     const Element e = left.front().what.element;
     left.pop_front();
-    bool confirm = confirms(e);
-    for (; !left.empty() && left.front().what.piece.length == 0.0; left.pop_front())
-      confirm = confirm || confirms(left.front().what.element);
     from = drive_rest(from, n == 0 ? rest_of(e, first.piece, s, config.axis_count) : std::vector<Element>{e},
-                      confirm);
+                      confirms(e));
+  }
+  if (left.size() < 2) {
+    if (!left.empty()) single = left.front().what;
+    end_run();
+    return true;
   }
   begin_course(from);
-  if (left.empty()) end_run();
   for (const OnCourse& next : left) {
     put_on_course(next.what.element, next.what.piece);
     gather.add(next.what.element);
@@ -304,9 +313,7 @@ bool Planner::Impl::take(const Element& e, const Piece& piece) {
 /// The element moves nothing and decides how the one before ends.
 void Planner::Impl::rest_behind(const Element& e, const Piece& piece) {
   if (single) {
-    Transition& t = single->element.transition;
-    t.confirm = confirms(single->element) || confirms(e);
-    t.continuation = Continuation::exact_stop;
+    stop_behind(single->element, e);
   } else if (run == Run::course) {
     pass_on(e, piece);
   } else {
