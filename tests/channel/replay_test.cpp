@@ -2,7 +2,9 @@
 // A record of what came into the cycles repeats several runs, whenever their reader was quick or slow.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
+#include <string>
 
 #include "tests/channel/rig.hpp"
 #include "tests/property_seed.hpp"
@@ -133,6 +135,31 @@ TEST(Replay, of_several_starts_repeats_every_set_point) {
     for (std::size_t n = 0; n < path.size(); ++n)
       ASSERT_EQ(path[n], run.path[n]) << "cycle " << n << " of " << path.size() << ", seed " << seed + i;
   }
+}
+
+/// As a replay does, which knows no time: it calls until nothing is left to do.
+TEST(Replay, needs_no_call_of_the_reader_behind_its_word_that_nothing_is_left) {
+  // One element of them is known to be several windows of the planner.
+  std::string program = "N10 G27\n";
+  for (int k = 0; k < 30; ++k) program += "G2 X40 Y0 I20 J0 F6000\nG2 X0 Y0 I20 J0\n";
+  Rig rig(program + "M30\n");
+  const auto filled = [&] {
+    std::array<std::uint64_t, Process::kCrossingsEach> counts{};
+    rig.process->published(counts);
+    return counts;
+  };
+  int said = 0;
+  rig.read = [&] {
+    if (rig.process->work()) return;
+    const auto before = filled();
+    for (int n = 0; n < 20; ++n) rig.process->work();
+    EXPECT_EQ(filled(), before);
+    ++said;
+  };
+  rig.start();
+  rig.run(6.0);
+  EXPECT_EQ(rig.state(), image::ProcessState::running);
+  EXPECT_GT(said, 100);
 }
 
 TEST(Counts, of_what_is_published_begin_at_zero_with_every_start) {
