@@ -236,6 +236,7 @@ double PathRamp::jerk_left(const CourseView& view, const RateLimits& limits, dou
 bool PathRamp::leave_acceleration(const CourseView& view, const RateLimits& limits, const MotionState& now,
                                   double v1, std::size_t number) noexcept {
   constexpr int kParts = 3;
+  constexpr double kLeast = 0.3;  // of the jerk in any direction; by less the law's own way is better
   profile_.start(now);
   const double any = here_.any.jerk, natural = now.v + 0.5 * now.a * std::abs(now.a) / any;
   if (!(now.a * (v1 - natural) < 0.0)) return natural >= 0.0;
@@ -252,7 +253,7 @@ bool PathRamp::leave_acceleration(const CourseView& view, const RateLimits& limi
     profile_.add(part / here, sense * here);
     const double jerk = share * std::min(here, left());
     profile_ = before;
-    if (!(jerk > 0.0)) return false;
+    if (!(jerk > kLeast * any)) return false;
     profile_.add(part / jerk, sense * jerk);
   }
   profile_.finish_at({profile_.end().s, profile_.end().v, 0.0});

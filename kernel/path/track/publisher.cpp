@@ -7,7 +7,7 @@ namespace servogate::path {
 namespace {
 
 // s, to the last stop that is known; no change of rate takes longer.
-constexpr double kPlannedAhead = 4.8;
+constexpr double kPlannedAhead = 9.6;
 // The knot at the end of the interval in motion is so far behind those that are given back.
 constexpr std::uint64_t kKnotsKept = 8;
 
