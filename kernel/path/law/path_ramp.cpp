@@ -15,8 +15,9 @@ constexpr double kAside = 0.9;    // of an axis' acceleration: the bend leaves t
 constexpr double kBent = 0.05;    // of it: the bend leaves less than all of the jerk
 constexpr double kTurned = 0.4;   // cosine
 constexpr double kMostOfAcceleration = 0.9996;
-constexpr int kSolve = 1;           // looks that take as long as to find the place
-constexpr double kSpeedsUp = 0.02;  // of it
+constexpr int kSolve = 1;              // looks that take as long as to find the place
+constexpr double kSpeedsUp = 0.02;     // of it
+constexpr double kAboveRising = 0.02;  // of the rate, while the law speeds up to a feed
 constexpr double kSameRate = 1e-10;
 constexpr double kSlow = 1e-3;         // mm/s of the law: it rests, or nearly
 constexpr double kSame = 1e-12;        // mm
@@ -384,8 +385,7 @@ Fit PathRamp::verify(const CourseView& view, const RateLimits& limits, int& plac
     const double rate = std::abs(state_.rate);
     // Out of speeding up above full rate it goes on up for a while.
     if (t == 0.0 && rate > 1.0) most = rate * fastest_ / profile_.at(0.0).v;
-    // While the law speeds up no feed holds it back.
-    if (!(rate <= most + kAbove || speeds_up_)) return Fit::breaks;
+    if (!(rate <= most + (speeds_up_ ? kAboveRising : kAbove))) return Fit::breaks;
     if (t_ >= whole) return Fit::fits;
   }
 }

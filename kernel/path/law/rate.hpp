@@ -163,8 +163,8 @@ bool reaches_stop(const CourseView& view, const LawTime& at, double r1, double b
 
 /// The early branch of a course: the speed along the path goes by constant jerk, by what the path's bend
 /// leaves of the axes, whatever the law does there, and law time follows from the place. On the way the rate
-/// may be up to kAbove beyond 1: the law leaves a reserve that the ramp need not leave. Everything here is
-/// real-time safe.
+/// may be up to kAbove beyond 1, or 2 % while the law speeds up: the law leaves a reserve that the ramp need
+/// not leave. Everything here is real-time safe.
 class PathRamp {
  public:
   static constexpr double kAbove = 6e-3;

@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <random>
 #include <sstream>
 
+#include "gateway/control/compose/reading_beside.hpp"
 #include "tests/machine_run/loss/forked.hpp"
 #include "tests/machine_run/rig/mill.hpp"
 
@@ -133,7 +135,11 @@ struct Case {
 
 class Lossy {
  public:
-  explicit Lossy(const machine::LoadResult& machine) : machine_(machine), mill_(machine, kProgram) {
+  /// Without a thread beside it, as a forked copy has none.
+  explicit Lossy(const machine::LoadResult& machine)
+      : machine_(machine),
+        mill_(machine, kProgram, nullptr,
+              {.worker = [] { return std::make_unique<gateway::WorksAtOnce>(); }}) {
     ready_ = mill_.make_ready();
     if (!ready_) return;
     ready_ = mill_.ask(RequestKind::start) == cycle::Refusal::none;

@@ -72,10 +72,12 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 Mill::Mill(std::string_view program, cycle::InputSource* source)
     : Mill(machine::load(machine_run::source("examples/mill/machine.toml")), program, source) {}
 
-Mill::Mill(const machine::LoadResult& loaded, std::string_view program, cycle::InputSource* source)
+Mill::Mill(const machine::LoadResult& loaded, std::string_view program, cycle::InputSource* source,
+           gateway::RunSettings settings)
     : program_(program) {
   std::vector<text::Finding> findings;
-  machine_ = gateway::RunningMachine::compose(loaded, nullptr, {.source = source}, findings);
+  settings.source = source;
+  machine_ = gateway::RunningMachine::compose(loaded, nullptr, settings, findings);
   if (machine_ == nullptr) {
     ADD_FAILURE() << "the mill is not composed";
     std::abort();

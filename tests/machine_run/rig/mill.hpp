@@ -36,8 +36,9 @@ class Mill {
  public:
   /// With `program` as its part program (NC-110). `source`: the inputs come from a record.
   explicit Mill(std::string_view program = {}, cycle::InputSource* source = nullptr);
-  /// The same with another machine file.
-  Mill(const machine::LoadResult& machine, std::string_view program, cycle::InputSource* source = nullptr);
+  /// The same with another machine file. `settings`: its source is `source`.
+  Mill(const machine::LoadResult& machine, std::string_view program, cycle::InputSource* source = nullptr,
+       gateway::RunSettings settings = {});
 
   gateway::RunningMachine& machine() { return *machine_; }
   gateway::Control& control() { return *control_; }
