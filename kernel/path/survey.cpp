@@ -31,7 +31,7 @@ void Survey::rest() {
 }
 
 void Survey::open(const Programmed& in, bool from_rest) {
-  open_.emplace();
+  open_ = Open{};
   open_->from_rest = from_rest;
   open_->place.first = open_->place.last = in.tag;
   open_->place.slowest = open_->place.feed = in.feed;

@@ -182,11 +182,11 @@ Vector Interval::jerk(double in, const RateState& rate, int axes) const noexcept
 }
 
 double Interval::length(double from, double to, int axes) const noexcept {
-  constexpr double kPlace = 0.7745966692414834, kOuter = 5.0 / 18.0, kInner = 8.0 / 18.0;
+  constexpr double kAside = 0.7745966692414834, kOuterPart = 5.0 / 18.0, kInnerPart = 8.0 / 18.0;
   const double mid = 0.5 * (from + to), half = 0.5 * (to - from);
   if (even_) return (to - from) * speed(mid, axes);
-  return (to - from) * (kOuter * (speed(mid - kPlace * half, axes) + speed(mid + kPlace * half, axes)) +
-                        kInner * speed(mid, axes));
+  return (to - from) * (kOuterPart * (speed(mid - kAside * half, axes) + speed(mid + kAside * half, axes)) +
+                        kInnerPart * speed(mid, axes));
 }
 
 CoursePoint Interval::at(double in, double rate, double slope, int axes) const noexcept {
