@@ -178,14 +178,9 @@ Box PathRamp::box(std::size_t number, double fastest, double change) const noexc
   return box;
 }
 
-bool PathRamp::begin(const CourseView& view, const RateLimits& limits, const From& from) noexcept {
+/// What the axes can where the ramp begins. False: the law rests there, or the bend takes nearly all of them.
+bool PathRamp::look_at_axes(const RateLimits& limits, const CoursePoint& law) noexcept {
   constexpr double kMoves = 1e-3, kMost = std::numeric_limits<double>::infinity();
-  from_ = from;
-  forwards_ = from.rate < 0.0 ? -1.0 : 1.0;
-  if (!interval_.take(view, from.knot, limits)) return false;
-  const double in = from.time.since(interval_.begin());
-  if (!(in >= 0.0 && in <= interval_.seconds())) return false;
-  const CoursePoint law = interval_.at(in, 1.0, 0.0, limits.axes);
   const double v = norm(law.v, limits.axes), a = norm(law.a, limits.axes);
   if (!(v > kSlow)) return false;
   const double along = dot(law.v, law.a, limits.axes) / v;
@@ -193,7 +188,7 @@ bool PathRamp::begin(const CourseView& view, const RateLimits& limits, const Fro
   for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
     const AxisLimits& axis = limits.limits[i];
     const double part = std::abs(law.v[i]) / v, aside = std::abs(law.a[i] - along * law.v[i] / v);
-    if (!(aside * from.rate * from.rate <= kAside * axis.acceleration)) return false;
+    if (!(aside * from_.rate * from_.rate <= kAside * axis.acceleration)) return false;
     if (part > 0.0) {
       Box& box = here_.straight;
       box = {std::min(box.velocity, axis.velocity / part),
@@ -206,6 +201,23 @@ bool PathRamp::begin(const CourseView& view, const RateLimits& limits, const Fro
   }
   here_.curve = std::sqrt(std::max(0.0, a * a - along * along)) / (v * v);
   return true;
+}
+
+bool PathRamp::begin(const CourseView& view, const RateLimits& limits, const From& from, double target,
+                     int& places) noexcept {
+  from_ = from;
+  forwards_ = from.rate < 0.0 || (from.rate == 0.0 && target < 0.0) ? -1.0 : 1.0;
+  first_way_ = 0.0;
+  if (!rewind(view, limits) || !(in_ >= 0.0 && in_ <= interval_.seconds())) return false;
+  if (!look_at_axes(limits, interval_.at(in_, 1.0, 0.0, limits.axes))) return false;
+  way_ = first_way_ = interval_.length(0.0, in_, limits.axes);
+  begin_ = -first_way_;
+  const Interval::Pace law = interval_.pace(in_, limits.axes);
+  now_ = {0.0, forwards_ * from.rate * law.v,
+          forwards_ * (law.a * from.rate * from.rate + law.v * from.slope)};
+  wanted_ = std::max(0.0, forwards_ * target);
+  v1_ = wanted_ > 0.0 ? wanted_ * fastest_ahead(view, limits, places) : 0.0;
+  return now_.v >= 0.0 && (v1_ > 0.0 || wanted_ == 0.0);
 }
 
 /// The jerk that the axes leave to slow down (sense -1) or to speed up (1) some seconds behind the start, at
@@ -234,15 +246,15 @@ double PathRamp::jerk_left(const CourseView& view, const RateLimits& limits, dou
 
 /// First what is left of an acceleration the other way round, by nearly all of the jerk that there is for it,
 /// which gets less and more on a bent path.
-bool PathRamp::leave_acceleration(const CourseView& view, const RateLimits& limits, const MotionState& now,
-                                  double v1, std::size_t number) noexcept {
+bool PathRamp::leave_acceleration(const CourseView& view, const RateLimits& limits,
+                                  std::size_t number) noexcept {
   constexpr int kParts = 3;
   constexpr double kLeast = 0.3;  // of the jerk in any direction; by less the law's own way is better
-  profile_.start(now);
-  const double any = here_.any.jerk, natural = now.v + 0.5 * now.a * std::abs(now.a) / any;
-  if (!(now.a * (v1 - natural) < 0.0)) return natural >= 0.0;
-  const double sense = now.a > 0.0 ? -1.0 : 1.0, part = std::abs(now.a) / kParts;
-  const double share = bent(now.v) ? kFirst[number] : kStraight[number];
+  profile_.start(now_);
+  const double any = here_.any.jerk, natural = now_.v + 0.5 * now_.a * std::abs(now_.a) / any;
+  if (!(now_.a * (v1_ - natural) < 0.0)) return natural >= 0.0;
+  const double sense = now_.a > 0.0 ? -1.0 : 1.0, part = std::abs(now_.a) / kParts;
+  const double share = bent(now_.v) ? kFirst[number] : kStraight[number];
   for (int n = kParts; n > 0; --n) {
     const auto left = [&] {
       const MotionState& m = profile_.end();
@@ -261,53 +273,36 @@ bool PathRamp::leave_acceleration(const CourseView& view, const RateLimits& limi
   return profile_.end().v >= 0.0;
 }
 
-/// The profile to `wanted` times the law's speed where it ends, which is about v1.
-bool PathRamp::aim(const CourseView& view, const RateLimits& limits, double wanted, double v1, const Box& box,
-                   int& places) noexcept {
+/// The profile to the rate that is wanted where it ends.
+bool PathRamp::aim(const CourseView& view, const RateLimits& limits, const Box& box, int& places) noexcept {
   constexpr int kTurns = 3;
   const Profile start = profile_;
+  double v1 = v1_;
   for (int n = 0; n < kTurns; ++n) {
     profile_ = start;
     add_ramp(profile_, start.end().v, start.end().a, v1, box);
     const MotionState end = motion(profile_.duration());
     if (!move_to(view, limits, end.s, &places) || !look(end, 0.0, limits.axes)) return false;
     if (!bent(fastest_) && !goes_straight(limits.axes)) return false;  // round a corner
-    const double off = wanted - std::abs(state_.rate);
+    const double off = wanted_ - std::abs(state_.rate);
     ends_even_ = interval_.even() && std::abs(off) <= kSameRate;
-    if (wanted == 0.0 || std::abs(off) <= kSameRate) break;
-    if (n + 1 < kTurns) v1 *= wanted / std::abs(state_.rate);
+    if (wanted_ == 0.0 || std::abs(off) <= kSameRate) break;
+    if (n + 1 < kTurns) v1 *= wanted_ / std::abs(state_.rate);
   }
   return true;
 }
 
-bool PathRamp::plan(const CourseView& view, const RateLimits& limits, double target, std::size_t number,
+bool PathRamp::plan(const CourseView& view, const RateLimits& limits, std::size_t number,
                     int& places) noexcept {
-  forwards_ = from_.rate < 0.0 || (from_.rate == 0.0 && target < 0.0) ? -1.0 : 1.0;
-  begin_ = 0.0;
-  first_way_ = 0.0;
-  if (!take(view, from_.knot, limits)) return false;
-  in_ = from_.time.since(interval_.begin());
-  first_way_ = interval_.length(0.0, in_, limits.axes);
-  if (!rewind(view, limits)) return false;
-  const double wanted = std::max(0.0, forwards_ * target);
-  const Interval::Pace law = interval_.pace(in_, limits.axes);
-  const MotionState now{0.0, forwards_ * from_.rate * law.v,
-                        forwards_ * (law.a * from_.rate * from_.rate + law.v * from_.slope)};
-  double v1 = 0.0;
-  if (wanted > 0.0) {
-    v1 = wanted * fastest_ahead(view, limits, places);
-    if (!(v1 > 0.0) || !rewind(view, limits)) return false;
-  }
-  if (!(now.v >= 0.0 && leave_acceleration(view, limits, now, v1, number))) return false;
-  const double then = profile_.end().v;
-  fastest_ = std::max({now.v, then, v1});
-  const Box limit = box(number, fastest_, std::abs(v1 - then));
+  if (!rewind(view, limits) || !leave_acceleration(view, limits, number)) return false;
+  const MotionState& then = profile_.end();
+  fastest_ = std::max({now_.v, then.v, v1_});
+  const Box limit = box(number, fastest_, std::abs(v1_ - then.v));
   if (!(limit.jerk > 0.0)) return false;
-  const double rest = then + 0.5 * profile_.end().a * std::abs(profile_.end().a) / limit.jerk;
-  if (!(rest >= 0.0)) return false;  // it would turn round
-  if (!aim(view, limits, wanted, v1, limit, places)) return false;
+  if (!(then.v + 0.5 * then.a * std::abs(then.a) / limit.jerk >= 0.0)) return false;  // it would turn round
+  if (!aim(view, limits, limit, places)) return false;
   const double jerk = profile_.jerk(0.0);
-  turns_ = jerk * now.a < 0.0 ? -now.a / jerk : 0.0;
+  turns_ = jerk * now_.a < 0.0 ? -now_.a / jerk : 0.0;
   fastest_ = std::max(fastest_, profile_.end().v);
   return rewind(view, limits) && profile_.duration() > 0.0;
 }
@@ -364,7 +359,7 @@ double PathRamp::next_place(double t, double step) const noexcept {
     const MotionState now = motion(t);
     const double left = forwards_ > 0.0 ? begin_ + whole_ - now.s : now.s - begin_,
                  in = left / std::abs(now.v);
-    if (in < 2.0 * step) step = in + 0.5 * kBesideKnot;
+    if (in < 2.0 * step) step = std::max(0.0, in) + 0.5 * kBesideKnot;
   }
   double to = std::min(t + step, profile_.duration());
   if (turns_ > t) to = std::min(to, turns_);

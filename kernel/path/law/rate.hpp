@@ -109,11 +109,10 @@ class Interval {
   Pace pace(double in, int axes) const noexcept;
   /// Third derivative by time, at this rate.
   Vector jerk(double in, const RateState& rate, int axes) const noexcept;
+  /// As pace().v.
   double speed(double in, int axes) const noexcept;
   /// The way along the path between two law times, by Gauss' rule of three places; below 0 backwards.
   double length(double from, double to, int axes) const noexcept;
-  /// The spline's parameter by law time, 0 to 1.
-  const Quintic& tau() const noexcept { return tau_; }
   /// A straight at constant speed.
   bool even() const noexcept { return even_; }
 
@@ -175,13 +174,14 @@ class PathRamp {
     std::int64_t knot = 1;
     double rate = 1.0, slope = 0.0;
   };
-  /// Looks at the path from here on, once for some plans. False: the law rests.
-  bool begin(const CourseView& view, const RateLimits& limits, const From& from) noexcept;
-  /// The way to `target` times the law's speed, or to rest where that is the other way round. False: the
-  /// motion would turn round, too little is published, or more knots would be passed than `places`, which it
-  /// counts down.
-  bool plan(const CourseView& view, const RateLimits& limits, double target, std::size_t number,
-            int& places) noexcept;
+  /// Looks at the path from here on, once for all plans of the way to `target` times the law's speed, or to
+  /// rest where that is the other way round. Counts `places` down by the knots that it looks at. False: the
+  /// law rests, or the bend of the path takes nearly all of an axis.
+  bool begin(const CourseView& view, const RateLimits& limits, const From& from, double target,
+             int& places) noexcept;
+  /// One of kPlans. False: the motion would turn round, too little is published, or more knots would be
+  /// passed than `places`, which it counts down.
+  bool plan(const CourseView& view, const RateLimits& limits, std::size_t number, int& places) noexcept;
   /// Whether it keeps all limits to its end. Counts the places down that it looks at, one between knots for
   /// two, and stops at 0.
   Fit verify(const CourseView& view, const RateLimits& limits, int& places) noexcept;
@@ -211,6 +211,7 @@ class PathRamp {
   bool step_on(const CourseView& view, const RateLimits& limits, bool forwards) noexcept;
   bool move_to(const CourseView& view, const RateLimits& limits, double s, int* places) noexcept;
   void move_in(double s, int axes) noexcept;
+  bool look_at_axes(const RateLimits& limits, const CoursePoint& law) noexcept;
   bool look(const MotionState& motion, double jerk, int axes) noexcept;
   double fastest_ahead(const CourseView& view, const RateLimits& limits, int& places) noexcept;
   bool bent(double speed) const noexcept;
@@ -218,21 +219,21 @@ class PathRamp {
   Box box(std::size_t number, double fastest, double change) const noexcept;
   double jerk_left(const CourseView& view, const RateLimits& limits, double seconds,
                    const MotionState& motion, double sense) const noexcept;
-  bool leave_acceleration(const CourseView& view, const RateLimits& limits, const MotionState& now, double v1,
-                          std::size_t number) noexcept;
-  bool aim(const CourseView& view, const RateLimits& limits, double wanted, double v1, const Box& box,
-           int& places) noexcept;
+  bool leave_acceleration(const CourseView& view, const RateLimits& limits, std::size_t number) noexcept;
+  bool aim(const CourseView& view, const RateLimits& limits, const Box& box, int& places) noexcept;
   bool keeps_to(const CourseView& view, const RateLimits& limits, double t, int& places) noexcept;
   MotionState motion(double t) const noexcept;
   double next_place(double t, double step) const noexcept;
 
   From from_;
   Here here_;
-  double forwards_ = 1.0;  ///< -1: backwards
-  Profile profile_;        ///< of the speed, seen in the direction of the motion
+  MotionState now_;                 ///< there, in the direction of the motion
+  double wanted_ = 0.0, v1_ = 0.0;  ///< rate at the end, >= 0, and about the speed there
+  double forwards_ = 1.0;           ///< -1: backwards
+  Profile profile_;                 ///< of the speed, seen in the direction of the motion
   Interval interval_;
-  double begin_ = 0.0,
-         whole_ = 0.0;  ///< the interval's place along the path, from where the ramp begins, and length
+  double begin_ = 0.0;           ///< of the interval, along the path from where the ramp begins
+  double whole_ = 0.0;           ///< length of the interval
   double in_ = 0.0, way_ = 0.0;  ///< law time and way since the interval's begin
   double first_way_ = 0.0;       ///< from the interval's begin to where the ramp begins
   double t_ = 0.0;               ///< the last place
@@ -270,7 +271,7 @@ class RateMotion {
   /// its start backwards, or to where it rests if it is broken.
   bool step(const CourseView& view, double target, double period) noexcept;
   CoursePoint point(const CourseView& view) const noexcept;
-  /// -1 to 1, or above 1 where that is wanted; on a ramp up to PathRamp::kAbove beyond.
+  /// -1 to 1, or above 1 where that is wanted; on a ramp up to 2 % beyond (PathRamp).
   double rate() const noexcept { return rate_; }
   const LawTime& time() const noexcept { return time_; }
   std::int64_t knot() const noexcept { return knot_; }

@@ -91,11 +91,11 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
   const StopHint hint = target == 0.0 && rate_ > 0.0 ? view.stop_near(knot_) : StopHint{};
   const double in = until(view, hint);
   const double known = in < 0.0 ? std::numeric_limits<double>::infinity() : in + hint.seconds / rate_;
-  const bool begins = ramp_.begin(view, limits_, {time_, knot_, rate_, slope_});
+  const bool begins = ramp_.begin(view, limits_, {time_, knot_, rate_, slope_}, target, places);
   const std::size_t plans = target == 0.0 && slows_down(view) ? kWhileSlowing : PathRamp::kPlans;
   for (std::size_t n = 0; begins && n < plans && !fits; ++n) {
     left_ -= kTry;
-    if (places <= 0 || !ramp_.plan(view, limits_, target, n, places)) break;
+    if (places <= 0 || !ramp_.plan(view, limits_, n, places)) break;
     const bool rests = ramp_.to_rest(), even = ramp_.ends_even();
     if (!rests && !even && std::abs(target - rate_) < kLittle) break;
     if (rests && ramp_.seconds() > known) break;
@@ -160,10 +160,10 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
     const LawTime at = view.knot(ahead_.knot)->t;
     int places = kPlaces;
     left_ -= places;
-    const bool fits = at.since(time_) >= 0.0 && ramp_.begin(view, limits_, {at, ahead_.knot, rate_, 0.0}) &&
-                      ramp_.plan(view, limits_, 0.0, kPlan, places) &&
-                      at.since(time_) / rate_ + ramp_.seconds() < least &&
-                      ramp_.verify(view, limits_, places) == Fit::fits;
+    const bool fits =
+        at.since(time_) >= 0.0 && ramp_.begin(view, limits_, {at, ahead_.knot, rate_, 0.0}, 0.0, places) &&
+        ramp_.plan(view, limits_, kPlan, places) && at.since(time_) / rate_ + ramp_.seconds() < least &&
+        ramp_.verify(view, limits_, places) == Fit::fits;
     left_ += places;
     if (!fits) continue;
     if (!ramp_.rewind(view, limits_)) break;
