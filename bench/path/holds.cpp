@@ -9,7 +9,7 @@
 
 #include "bench/path/works.hpp"
 #include "kernel/path/law/pipeline.hpp"
-#include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/rate_motion.hpp"
 #include "kernel/path/shape/gather.hpp"
 
 namespace {

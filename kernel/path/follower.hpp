@@ -5,7 +5,7 @@
 
 #include "kernel/path/law/master_motion.hpp"
 #include "kernel/path/law/motion.hpp"
-#include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/rate_motion.hpp"
 #include "kernel/path/law/retract.hpp"
 #include "kernel/path/track/window.hpp"
 

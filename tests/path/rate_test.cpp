@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The branch of a law over one clock: holds, overrides below 100 % and the way back, at any time.
-#include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/rate_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -180,6 +180,44 @@ TEST(Rate, a_hold_or_a_lower_override_from_full_rate_is_settled_in_the_next_cycl
     }
   }
   std::printf("%d of %d began behind a slow place\n", later, holds);
+}
+
+/// The shortest stop that could begin in this cycle, by looking at all lengths, s; `most` if none is shorter.
+double shortest_stop_now(const Driven& d, const RateMotion& motion, double most) {
+  for (double seconds = RateChange::kShortest; seconds < most; seconds *= 1.03)
+    for (const int power : {2, 3}) {
+      int places = 1 << 20;
+      Verification way;
+      way.begin({1.0, 0.0, 0.0, seconds, power}, motion.time(), motion.knot());
+      if (way.go(d.view, d.limits, places) == Fit::fits) return seconds;
+    }
+  return most;
+}
+
+TEST(Rate, a_hold_rests_about_as_soon_as_by_the_shortest_stop_that_could_begin_in_its_cycle) {
+  constexpr int kLater = 20;
+  double taken = 0.0, shortest = 0.0;
+  int holds = 0, later = 0, most_places = 0;
+  for (const Driven& d : hard_paths()) {
+    RateMotion motion(d.limits);
+    for (int cycle = 0; motion.step(d.view, 1.0, 0.001); ++cycle) {
+      if (cycle < 20 || cycle % 11 != 0) continue;
+      RateMotion held = motion;
+      int cycles = 0;
+      for (; !held.at_rest() && cycles < 10000 && held.step(d.view, 0.0, 0.001); ++cycles)
+        most_places = std::max(most_places, held.places());
+      const double best = 1000.0 * shortest_stop_now(d, motion, 0.001 * cycles);
+      taken += cycles;
+      shortest += best;
+      later += cycles > best + kLater ? 1 : 0;
+      ++holds;
+    }
+  }
+  std::printf("%d holds, %.1f cycles on average, by the shortest stops %.1f; %d of them %d cycles later\n",
+              holds, taken / holds, shortest / holds, later, kLater);
+  EXPECT_LE(taken, 1.01 * shortest);
+  EXPECT_LE(later, holds / 20);
+  EXPECT_LE(most_places, RateMotion::kMostPlaces + 64);
 }
 
 TEST(Rate, a_hold_during_a_change_is_on_its_way_within_a_hundred_and_sixty_cycles) {

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <limits>
 
-#include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/path_ramp.hpp"
 #include "kernel/path/shape/piece.hpp"
 
 namespace servogate::path {
@@ -21,6 +21,7 @@ constexpr double kAboveRising = 0.02;  // of the rate, while the law speeds up t
 constexpr double kSameRate = 1e-10;
 constexpr double kSlow = 1e-3;         // mm/s of the law: it rests, or nearly
 constexpr double kSame = 1e-12;        // mm
+constexpr double kLengthKnown = 1e-8;  // mm
 constexpr double kBesideBreak = 1e-9;  // s from where the jerk changes
 constexpr double kBesideKnot = 2e-5;   // s
 constexpr int kRounds = 12;            // of a place's search
@@ -89,10 +90,15 @@ MotionState PathRamp::motion(double t) const noexcept {
   return {forwards_ * m.s, forwards_ * m.v, forwards_ * m.a};
 }
 
+/// Not where the path turns so sharply that its length is not known well enough.
 bool PathRamp::take(const CourseView& view, std::int64_t m, const RateLimits& limits) noexcept {
   if (!interval_.take(view, m, limits)) return false;
-  whole_ = interval_.length(0.0, interval_.seconds(), limits.axes);
-  return true;
+  const double end = interval_.seconds(), middle = 0.5 * end;
+  whole_ = interval_.length(0.0, end, limits.axes);
+  if (interval_.even()) return true;
+  const double halves =
+      interval_.length(0.0, middle, limits.axes) + interval_.length(middle, end, limits.axes);
+  return std::abs(halves - whole_) <= kLengthKnown;
 }
 
 bool PathRamp::step_on(const CourseView& view, const RateLimits& limits, bool forwards) noexcept {
@@ -106,7 +112,7 @@ bool PathRamp::step_on(const CourseView& view, const RateLimits& limits, bool fo
   return true;
 }
 
-/// To a place in the interval.
+/// To a place in the interval, by its length from the begin: what is not known of that is no step at a knot.
 void PathRamp::move_in(double s, int axes) noexcept {
   for (int n = 0; n < kRounds; ++n) {
     const double missing = s - begin_ - way_;
@@ -114,7 +120,7 @@ void PathRamp::move_in(double s, int axes) noexcept {
     const double v = interval_.speed(in_, axes);
     const double to = std::clamp(in_ + missing / std::max(v, kSlow), 0.0, interval_.seconds());
     if (to == in_) return;
-    way_ += interval_.length(in_, to, axes);
+    way_ = interval_.length(0.0, to, axes);
     in_ = to;
   }
 }

@@ -304,19 +304,15 @@ CoursePoint point_at(const CourseView& view, const LawTime& t, std::int64_t near
   return interval.at(t.since(interval.begin()), 0.0, 0.0, limits.axes);
 }
 
-namespace {
-
-/// Every eighth place that Verification looks at: false where one of them breaks a limit, which most changes
-/// that are too short do.
-bool keeps_here_and_there(const CourseView& view, const RateChange& change, const LawTime& from,
-                          std::int64_t near, const RateLimits& limits) {
-  constexpr int kApart = 8;
-  const double next = spacing(change);
+bool may_keep(const CourseView& view, const RateChange& change, const LawTime& from, std::int64_t near,
+              const RateLimits& limits, int& places) noexcept {
+  constexpr double kApart = 8.0;
+  const double step = kApart * spacing(change);
   CoursePlace place(view);
   place.set_knot(near);
   Interval interval;
-  for (double t = 0.0; t < change.seconds;) {
-    for (int n = 0; n < kApart; ++n) t = std::min(t + next, change.seconds);
+  for (double t = 0.0; t < change.seconds && places > 0; --places) {
+    t = std::min(t + step, change.seconds);
     const RateState s = change.at(t);
     const LawTime at = from.plus(s.passed);
     const double in = at.since(interval.begin());
@@ -328,8 +324,6 @@ bool keeps_here_and_there(const CourseView& view, const RateChange& change, cons
   return true;
 }
 
-}  // namespace
-
 StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& before,
                    const RateLimits& limits) {
   constexpr int kShorter = 4, kTries = 24, kPlaces = 1 << 20;
@@ -338,7 +332,8 @@ StopHint find_stop(const CourseView& view, std::int64_t knot, const StopHint& be
   if (at == nullptr) return {};
   const std::int64_t near = std::max<std::int64_t>(1, knot);
   const auto may_fit = [&](double seconds, int power) {
-    return keeps_here_and_there(view, {1.0, 0.0, 0.0, seconds, power}, at->t, near, limits);
+    int places = kPlaces;
+    return may_keep(view, {1.0, 0.0, 0.0, seconds, power}, at->t, near, limits, places);
   };
   const auto fits = [&](const StopHint& stop) {
     int places = kPlaces;

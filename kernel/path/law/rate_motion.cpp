@@ -3,15 +3,13 @@
 #include <cmath>
 #include <iterator>
 
-#include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/rate_motion.hpp"
 
 namespace servogate::path {
 namespace {
 
-constexpr double kLeastShare = 0.03, kOfStop = 0.6;
 constexpr double kShortest = RateChange::kShortest;
 constexpr double kSameTime = 2e-12;  // s
-constexpr double kFarStop = 0.1;     // s; those between knots of a curve are nearer
 
 }  // namespace
 
@@ -44,17 +42,9 @@ void RateMotion::start(const RateChange& change) noexcept {
   active_ = true;
   on_ramp_ = false;
   ramp_at_ = -1;
-  open_ = stuck_ = creeping_ = levels_ = false;
+  prepared_ = {};
+  stuck_ = creeping_ = levels_ = false;
   if (change.r1 != 0.0) starving_ = false;
-}
-
-Fit RateMotion::enter(const CourseView& view, double target, double seconds, int power,
-                      double period) noexcept {
-  left_ -= kTry;
-  verification_.begin({rate_, slope_, target, seconds, power}, time_, knot_, period);
-  const Fit fit = verification_.go(view, limits_, left_);
-  if (fit == Fit::fits) start(verification_.change());
-  return fit;
 }
 
 /// Seconds until the knot of a stop; below 0: it lies behind, or is not known.
@@ -88,85 +78,6 @@ bool RateMotion::stop_in_time(const CourseView& view, double target, double peri
   if (view.end() >= 0 || !stop_at(view, view.guard(), period)) return false;
   starving_ = target != 0.0;
   return true;
-}
-
-/// A stop like the known one, which begins a little before it, and longer ones; from a lower rate shorter
-/// ones in each other cycle, as there is more room.
-bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double period) noexcept {
-  constexpr double kLongerBy[] = {1.0, 1.18, 1.4}, kLower = 0.9;
-  shorter_ = !shorter_ && rate_ < kLower;
-  const double seconds = shorter_ ? std::max(kShortest, hint.seconds * std::sqrt(rate_))
-                                  : hint.seconds / rate_ + std::max(0.0, until(view, hint));
-  for (const double longer : kLongerBy) {
-    if (left_ <= 0) return false;
-    if (enter(view, 0.0, seconds * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) == Fit::fits)
-      return true;
-  }
-  return false;
-}
-
-/// Instead of speeding up any further, a constant rate soon: from there what is wanted is found.
-bool RateMotion::level_off(const CourseView& view, double period) noexcept {
-  constexpr double kLengths[] = {0.04, 0.06, 0.1}, kMore = 0.3;
-  if (!(rate_ > 0.0)) return false;  // it would turn round
-  for (const double seconds : kLengths) {
-    if (left_ <= 0) return false;
-    levels_ = enter(view, std::min(1.0, rate_ + kMore * slope_ * seconds), seconds, 3, period) == Fit::fits;
-    if (levels_) return true;
-  }
-  return false;
-}
-
-/// First the known stop and longer ones; then, cycle by cycle, all lengths from the shortest on.
-void RateMotion::search(const CourseView& view, double target, double period) noexcept {
-  StopHint hint = view.stop_near(knot_);
-  // Far away, at the end of a straight, it says nothing of here.
-  if (until(view, hint) > kFarStop) hint = {};
-  // A change by less takes less; where no stop is known, all lengths are tried.
-  const double least =
-      hint.knot < 0 ? kShortest : std::max(kShortest, kOfStop * hint.seconds * std::abs(target - rate_));
-  const auto anew = [&] {
-    next_ = least;
-    power_ = 3;
-  };
-  if (searched_for_ != target) {
-    searched_for_ = target;
-    anew();
-    open_ = shorter_ = ramp_tried_ = false;
-    if (early(view, target, hint, period)) return;
-  } else if (early(view, target, hint, period)) {
-    return;
-  } else if (active_ && !levels_ && target < rate_ && slope_ > 0.0 && level_off(view, period)) {
-    return;
-  }
-  if (!open_) share_ = 1.0;
-  if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && try_known(view, hint, period)) return;
-  if (open_) {
-    const Fit fit = verification_.go(view, limits_, left_);
-    if (fit == Fit::fits) return start(verification_.change());
-    if (fit == Fit::open) return;
-    open_ = false;
-  }
-  while (left_ > 0) {
-    const bool alone = left_ == kMostPlaces;
-    const Fit fit = enter(view, share_ * target, next_, power_, period);
-    if (fit == Fit::fits) return;
-    // Longer changes would end behind all that is known, too.
-    if (fit == Fit::unpublished && power_ == 2) {
-      anew();
-      share_ *= 0.5;
-      stuck_ = share_ < kLeastShare && rate_ == 0.0;
-      if (share_ < kLeastShare || share_ * target <= rate_) return;
-      continue;
-    }
-    // The next cycle goes on: at rest, where the place does not move, with the same change; else with its
-    // length, or with the shortest where one cycle is not enough for it.
-    open_ = fit == Fit::open && rate_ == 0.0 && !active_;
-    if (fit == Fit::open && !open_ && !alone) return;
-    power_ = 5 - power_;
-    if (power_ == 3) next_ *= RateChange::kLonger;
-    if (next_ > RateChange::kLongest || (fit == Fit::open && !open_)) anew();
-  }
 }
 
 /// Up and back again at once; one try a cycle, shorter and longer ones in turn.
@@ -232,18 +143,18 @@ void RateMotion::creep(const CourseView& view, double target) noexcept {
   change.way = view.rests_at()->since(time_);
   if (!creeping_ || searched_for_ != target) {
     creeping_ = true;
-    open_ = false;
+    prepared_ = {};
     searched_for_ = target;
     next_ = std::max(kShortest, kPeak * std::abs(change.way) / std::min(1.0, target));
   }
   while (left_ > 0) {
     change.seconds = next_;
     left_ -= kTry;
-    if (!open_) verification_.begin(change, time_, knot_);
-    const Fit fit = verification_.go(view, limits_, left_);
-    if (fit == Fit::fits) return start(verification_.change());
-    open_ = fit == Fit::open;
-    if (!open_) next_ *= RateChange::kLonger;
+    if (prepared_.cycles == 0) prepared_.verification.begin(change, time_, knot_);
+    const Fit fit = prepared_.verification.go(view, limits_, left_);
+    if (fit == Fit::fits) return start(change);
+    prepared_.cycles = fit == Fit::open ? kAtRest : 0;
+    if (fit != Fit::open) next_ *= RateChange::kLonger;
   }
 }
 
@@ -273,7 +184,9 @@ void RateMotion::seek(const CourseView& view, double target, double period) noex
 bool RateMotion::step(const CourseView& view, double target, double period) noexcept {
   left_ = kMostPlaces;
   forget_ramps(target);
+  begin_prepared(target);
   seek(view, target, period);
+  if (target == 0.0) shorten_stop(view, period);
   if (!come_back(view, period) && !stop_in_time(view, target, period)) advance(view, period);
   const bool there = rests_there(view);
   CoursePlace place(view);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/rate_motion.hpp"
 #include "kernel/path/shape/piece.hpp"
 
 namespace servogate::path {
@@ -105,6 +105,7 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
                           : follow_ramp(view, target, period, places));
   }
   left_ += places;
+  const LawTime rests = ramp_.time();
   if (!fits || !ramp_.rewind(view, limits_)) {
     if (now) ramp_ = *now;
     change_ = then;
@@ -112,6 +113,7 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
   }
   start(change_);
   on_ramp_ = true;
+  ramp_rests_ = rests;
   return true;
 }
 
@@ -166,6 +168,7 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
         ramp_.verify(view, limits_, places) == Fit::fits;
     left_ += places;
     if (!fits) continue;
+    ramp_rests_ = ramp_.time();
     if (!ramp_.rewind(view, limits_)) break;
     ramp_at_ = ahead_.knot;
     return true;
