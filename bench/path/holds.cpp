@@ -67,30 +67,24 @@ double now() { return 1e6 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; 
 
 struct Holds {
   std::vector<double> stops;
-  double search = 0.0, worst = 0.0;  // us
-  int searched = 0, late = 0;
+  std::vector<double> cycles;  // us
+  int late = 0, places = 0;
 };
 
 /// One hold at a random cycle.
 void hold(const OneRun& run, const path::RateLimits& limits, int at, Holds& out) {
   path::RateMotion motion(limits);
-  const auto step = [&](double target) { return motion.step(run, target, 0.001); };
-  for (int n = 0; n < at; ++n) step(1.0);
+  for (int n = 0; n < at; ++n) motion.step(run, 1.0, 0.001);
   int cycles = 0;
-  bool on = true;
-  for (; on && !motion.changing() && motion.rate() != 0.0; ++cycles) {
+  bool on = true, late = false;
+  for (; on && !motion.at_rest(); ++cycles) {
+    late |= cycles > 0 && motion.rate() == 1.0;  // settled, and begins in the knot of the next known stop
     const double begin = now();
-    on = step(0.0);
-    const double took = now() - begin;
-    out.search += took;
-    out.worst = std::max(out.worst, took);
-    ++out.searched;
+    on = motion.step(run, 0.0, 0.001);
+    out.cycles.push_back(now() - begin);
+    out.places = std::max(out.places, motion.places());
   }
-  // Settled, and begins in the knot of the next known stop.
-  bool late = false;
-  for (; on && motion.rate() == 1.0; ++cycles, late = true) on = step(0.0);
   out.late += late ? 1 : 0;
-  for (; on && motion.changing(); ++cycles) on = step(0.0);
   if (on) out.stops.push_back(0.001 * cycles);
 }
 
@@ -108,12 +102,15 @@ void row(const char* name, const path::Config& config, const Program& program, d
   std::mt19937_64 random(5);
   std::uniform_int_distribution<int> cycle(20, static_cast<int>(run.seconds() * 1000) - 60);
   for (int n = 0; n < 300; ++n) hold(run, limits, cycle(random), holds);
-  std::sort(holds.stops.begin(), holds.stops.end());
-  const auto share = [&](double s) {
-    return holds.stops[static_cast<std::size_t>(s * static_cast<double>(holds.stops.size() - 1))];
+  const auto share = [](std::vector<double>& of, double s) {
+    const auto at = of.begin() + static_cast<std::ptrdiff_t>(s * static_cast<double>(of.size() - 1));
+    std::nth_element(of.begin(), at, of.end());
+    return *at;
   };
-  std::printf("%-30s %4.0f %% %7.3f %7.3f %7.3f %5d %8.1f %8.1f %8.0f\n", name, 100.0 * reserve, share(0.5),
-              share(0.9), share(1.0), holds.late, hint_cost, holds.search / holds.searched, holds.worst);
+  std::printf("%-30s %4.0f %% %7.3f %7.3f %7.3f %5d %8.1f %8.0f %8.0f %8.0f %7d\n", name, 100.0 * reserve,
+              share(holds.stops, 0.5), share(holds.stops, 0.9), share(holds.stops, 1.0), holds.late,
+              hint_cost, share(holds.cycles, 0.5), share(holds.cycles, 0.99), share(holds.cycles, 1.0),
+              holds.places);
   std::fflush(stdout);
 }
 
@@ -121,11 +118,12 @@ void row(const char* name, const path::Config& config, const Program& program, d
 
 int main() {
   std::printf(
-      "300 holds from full rate, each settled in its first cycle; seconds to standstill, how many began in "
+      "300 holds from full rate, each settled in its first cycle: seconds to standstill; how many began in "
       "the "
-      "knot of the next known stop (16 ms at most)\n");
-  std::printf("%-30s %6s %7s %7s %7s %5s %8s %8s %8s\n", "", "reserve", "p50", "p90", "max", "late",
-              "us/knot", "us/cycle", "worst us");
+      "knot of the next known stop, or behind a slow place; what a known stop costs the planner, and what a "
+      "cycle costs until the motion stands, and how many places it looks at, at most\n");
+  std::printf("%-30s %6s %7s %7s %7s %5s %8s %8s %8s %8s %7s\n", "", "reserve", "p50", "p90", "max", "late",
+              "us/knot", "p50 us", "p99 us", "max us", "places");
   const double full = 2.0 * std::numbers::pi;
   for (const double reserve : {0.01, 0.03}) {
     row("mill: circle R20, 1000 blocks", mill(), polygon(20, 1000, full / 1000, 6000), reserve);

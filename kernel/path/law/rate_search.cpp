@@ -115,14 +115,13 @@ bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double 
   return false;
 }
 
-/// Instead of going on the wrong way, a constant rate soon: from there what is wanted is found.
+/// Instead of speeding up any further, a constant rate soon: from there what is wanted is found.
 bool RateMotion::level_off(const CourseView& view, double period) noexcept {
   constexpr double kLengths[] = {0.04, 0.06, 0.1}, kMore = 0.3;
   if (!(rate_ > 0.0)) return false;  // it would turn round
   for (const double seconds : kLengths) {
     if (left_ <= 0) return false;
-    const double level = std::clamp(rate_ + kMore * slope_ * seconds, 0.0, 1.0);
-    levels_ = enter(view, level, seconds, 3, period) == Fit::fits;
+    levels_ = enter(view, std::min(1.0, rate_ + kMore * slope_ * seconds), seconds, 3, period) == Fit::fits;
     if (levels_) return true;
   }
   return false;
@@ -149,7 +148,7 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     if (early(view, target, hint, period)) return;
   } else if (preparing(view) || left_ <= 0 || early(view, target, hint, period)) {
     return;
-  } else if (active_ && !levels_ && (target - rate_) * slope_ < 0.0 && level_off(view, period)) {
+  } else if (active_ && !levels_ && target < rate_ && slope_ > 0.0 && level_off(view, period)) {
     return;
   }
   share_ = 1.0;
