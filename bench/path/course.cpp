@@ -51,7 +51,6 @@ class Reader final : public path::RunSink, public path::KnotSink {
   void put(const path::Knot& knot) override { knots_.push_back(knot); }
   void rest() override { take_run(); }
   void cruise(const path::Cruise& cruise) override;
-  void move(const path::Move& move) override;
   void work() {
     while (pipeline_.work()) {
     }
@@ -112,10 +111,6 @@ void Reader::cruise(const path::Cruise& cruise) {
   sample(cruise.seconds, [&](double t) {
     return path::position(cruise.piece, t / cruise.seconds * cruise.piece.length, config_.axis_count);
   });
-}
-
-void Reader::move(const path::Move& move) {
-  sample(move.profile.duration(), [&](double t) { return move.position(t, config_.axis_count); });
 }
 
 /// Times of one work, s.

@@ -44,7 +44,6 @@ class OneRun final : public path::RunSink, public path::KnotSink, public path::C
   void put(const path::Knot& knot) override { knots_.push_back(knot); }
   void rest() override {}
   void cruise(const path::Cruise& /*cruise*/) override {}
-  void move(const path::Move& /*move*/) override {}
   const path::Knot* knot(std::int64_t n) const noexcept override {
     if (n < 0) return &knots_.front();  // from rest
     return n <= end() ? &knots_[static_cast<std::size_t>(n)] : nullptr;

@@ -183,9 +183,6 @@ void CoursePlanning::arc(const Cruise& cruise, const Knot& before) {
   base_ = view_.knot(view_.last())->t;
 }
 
-/// Gather makes no run of a single line; as a run it would be planned as a move.
-void CoursePlanning::move(const Move& /*move*/) {}
-
 void CoursePlanning::append(const Knot& knot) {
   if (broken_) return;
   view_.knots.push_back(knot);

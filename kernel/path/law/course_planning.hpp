@@ -51,7 +51,6 @@ class CoursePlanning final : public CourseLaw, private KnotSink {
   void cruise(const Cruise& cruise) override;
   void straight(const Cruise& cruise, const Knot& before, double length);
   void arc(const Cruise& cruise, const Knot& before);
-  void move(const Move& move) override;
   void place(Leg leg);
   void append(const Knot& knot);
   void look_for_break();

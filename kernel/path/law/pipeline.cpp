@@ -74,7 +74,6 @@ void Pipeline::take(const Order& order) {
   if (end_) return behind_.push_back(order);
   if (order.kind == Order::Kind::leg) return run_.append(order.leg);
   if (order.kind == Order::Kind::rest && run_.empty()) return;
-  if (order.kind == Order::Kind::rest && move_instead()) return run_.clear();
   run_.end_at(order.speed);
   end_ = order;
 }
@@ -99,33 +98,8 @@ void Pipeline::abandon() {
   behind_.clear();
 }
 
-/// A single line from rest to rest takes the closed form.
-bool Pipeline::move_instead() {
-  const Leg& leg = run_.leg(run_.end() - 1);
-  if (begun_ || run_.end() - run_.first() != 1 || run_.begin_speed() > 0.0 ||
-      leg.piece.shape != Piece::Shape::line)
-    return false;
-  Box box{leg.feed, HUGE_VAL, HUGE_VAL};
-  const Vector along = turned_to_axes(*settings_.transformation, leg.piece.c1, settings_.axes);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(settings_.axes); ++i) {
-    const double rate = std::abs(along[i]) / (1.0 - settings_.reserve);
-    if (rate == 0.0) continue;
-    box.velocity = std::min(box.velocity, (*leg.limits)[i].velocity / rate);
-    box.acceleration = std::min(box.acceleration, (*leg.limits)[i].acceleration / rate);
-    box.jerk = std::min(box.jerk, (*leg.limits)[i].jerk / rate);
-  }
-  Move move;
-  move.line = leg.piece;
-  if (!plan(move.profile, {}, {leg.piece.length, box.velocity}, box)) return false;
-  sink_.move(move);
-  ++counts_.moves;
-  return true;
-}
-
 bool Pipeline::work() {
-  // One line may be all that there is.
-  if (!end_ && (run_.empty() || (!begun_ && run_.end() - run_.first() == 1 && run_.begin_speed() == 0.0)))
-    return false;
+  if (!end_ && run_.empty()) return false;
   if (!begun_) begin_run();
   if (!broken_ && advance()) {
     publish();

@@ -9,7 +9,6 @@
 #include "kernel/path/law/estimate.hpp"
 #include "kernel/path/law/even_time.hpp"
 #include "kernel/path/law/knot.hpp"
-#include "kernel/path/law/s_curve.hpp"
 #include "kernel/path/law/speed_windows.hpp"
 #include "kernel/path/shape/tube_windows.hpp"
 
@@ -19,14 +18,6 @@ namespace servogate::path {
 struct Cruise {
   Piece piece;
   double seconds = 0.0;
-};
-
-/// A straight way from rest to rest, as fast as it can be.
-struct Move {
-  Piece line;
-  Profile profile;  ///< of the line's parameter
-  /// real-time safe.
-  Vector position(double t, int axes) const noexcept { return path::position(line, profile.at(t).s, axes); }
 };
 
 /// Where knots go, in order.
@@ -40,8 +31,6 @@ class KnotSink {
   virtual void rest() = 0;
   /// The last knot was where the cruise begins; behind it another run begins.
   virtual void cruise(const Cruise& cruise) = 0;
-  /// Instead of a run.
-  virtual void move(const Move& move) = 0;
 
  protected:
   ~KnotSink() = default;
@@ -60,7 +49,7 @@ class Pipeline {
     int passes = 2;
   };
   struct Counts {
-    std::int64_t runs = 0, moves = 0, knots = 0;
+    std::int64_t runs = 0, knots = 0;
     /// Places that the curve of the last pass could not be brought near enough to by the pairing of place and
     /// parameter; mostly another pairing keeps the tolerance.
     std::int64_t released = 0;
@@ -112,7 +101,6 @@ class Pipeline {
   void begin_run();
   void take(const Order& order);
   void close_run();
-  bool move_instead();
   bool advance();
   bool work_pass(std::size_t n);
   bool make_places(std::size_t n);

@@ -30,10 +30,6 @@ class Collector final : public RunSink, public KnotSink {
   void put(const Knot& knot) override { course.runs.back().knots.push_back(knot); }
   void rest() override {}
   void cruise(const Cruise& cruise) override { course.runs.back().cruise = cruise; }
-  void move(const Move& move) override {
-    course.runs.emplace_back();
-    course.runs.back().move = move;
-  }
 
   std::unique_ptr<Pipeline> pipeline;
   Course course;
@@ -70,14 +66,6 @@ Vector at(const Stage& stage, std::size_t m, double t, int axes) {
   return x;
 }
 
-/// Phases of constant jerk are the planner's; the line is gone along by the length that they give.
-Vector at(const Move& move, double t, int axes) {
-  Vector x{};
-  const double s = move.profile.at(t).s / move.line.length;
-  for (int i = 0; i < axes; ++i) x[i] = move.line.c0[i] + s * (move.line.c5[i] - move.line.c0[i]);
-  return x;
-}
-
 void fail(std::string& text, const char* what, double value) {
   char line[120];
   std::snprintf(line, sizeof line, "%s %.6g; ", what, value);
@@ -86,10 +74,7 @@ void fail(std::string& text, const char* what, double value) {
 
 }  // namespace
 
-double Stage::seconds() const {
-  if (move) return move->profile.duration();
-  return time_of(knots.back()) + (cruise ? cruise->seconds : 0.0);
-}
+double Stage::seconds() const { return time_of(knots.back()) + (cruise ? cruise->seconds : 0.0); }
 
 double Course::seconds() const {
   double sum = 0.0;
@@ -118,12 +103,10 @@ Polyline sampled(const Course& course, const Vector& start, int axes, double per
   Polyline out(4, start);
   double next = period;  // from the begin of the stage
   for (const Stage& stage : course.runs) {
-    const double end = stage.seconds(), knots_end = stage.move ? 0.0 : time_of(stage.knots.back());
+    const double end = stage.seconds(), knots_end = time_of(stage.knots.back());
     std::size_t m = 1;
     for (; next < end; next += period) {
-      if (stage.move) {
-        out.push_back(at(*stage.move, next, axes));
-      } else if (next <= knots_end) {
+      if (next <= knots_end) {
         while (time_of(stage.knots[m]) < next) ++m;
         out.push_back(at(stage, m, next, axes));
       } else {
@@ -135,9 +118,7 @@ Polyline sampled(const Course& course, const Vector& start, int axes, double per
     next -= end;
     if (stage.cruise) continue;
     next = period;
-    const Vector rest =
-        stage.move ? at(*stage.move, end, axes) : at(stage, stage.knots.size() - 1, end, axes);
-    out.insert(out.end(), 4, rest);
+    out.insert(out.end(), 4, at(stage, stage.knots.size() - 1, end, axes));
   }
   return out;
 }

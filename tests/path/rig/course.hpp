@@ -12,12 +12,11 @@
 
 namespace servogate::path::test {
 
-/// A run with the two controls before it and the cruise behind it, or a move.
+/// A run with the two controls before it and the cruise behind it.
 struct Stage {
   std::array<Vector, 2> before{};
   std::vector<Knot> knots;
   std::optional<Cruise> cruise;  ///< else it ends at rest
-  std::optional<Move> move;      ///< instead of knots
   double seconds() const;
 };
 
