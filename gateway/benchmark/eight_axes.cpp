@@ -45,9 +45,10 @@ std::string eight_axis_machine(const std::string& plc) {
   return t;
 }
 
-std::string eight_axis_logic() {
+std::string eight_axis_logic(int statements) {
   std::string t =
-      "PROGRAM Main\nVAR\n  a, b, c : BOOL;\nEND_VAR\nMC.estop_ok := estop_chain_ok;\n"
+      "PROGRAM Main\n" + std::string(statements > 0 ? "VAR\n  a, b, c : BOOL;\nEND_VAR\n" : "") +
+      "MC.estop_ok := estop_chain_ok;\n"
       "MC.power_on := MC.power_request AND MC.estop_ok;\nNC.feed_enable := TRUE;\nNC.read_in_enable := "
       "TRUE;\n"
       "NC.m_ack := NC.m_strobe;\nNC.s_ack := NC.s_strobe;\nNC.t_ack := NC.t_strobe;\n";
@@ -55,8 +56,8 @@ std::string eight_axis_logic() {
     t += std::string(letter) + ".enable := MC.power_on;\n";
     t += std::string(letter) + ".feed_enable := TRUE;\n";
   }
-  t += "a := NC.running; b := NC.in_position;\n";
-  for (int i = 0; i < 1000; ++i) t += "c := a AND b;\n";
+  if (statements > 0) t += "a := NC.running; b := NC.in_position;\n";
+  for (int i = 0; i < statements; ++i) t += "c := a AND b;\n";
   return t + "END_PROGRAM\n";
 }
 
