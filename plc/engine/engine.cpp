@@ -193,8 +193,12 @@ void Engine::take_inputs(image::Packets& packets) noexcept {
   State& s = *state_;
   std::uint8_t* const mem = s.memory.data();
   const std::array<std::uint8_t*, 3> packet = packets_of(packets);
+  // Most places are bits; a branch of their own is shorter than the choice among all kinds.
   for (const Move& m : s.taken_in)
-    take_in(m, packet[static_cast<std::size_t>(m.packet)] + m.byte, mem + m.address);
+    if (m.kind == Move::Kind::bit)
+      mem[m.address] = (packet[static_cast<std::size_t>(m.packet)][m.byte] >> m.detail) & 1;
+    else
+      take_in(m, packet[static_cast<std::size_t>(m.packet)] + m.byte, mem + m.address);
   if (s.first)
     for (const Image::Shared& p : image_->places)
       if (p.initialised) {
@@ -214,8 +218,14 @@ void Engine::give_outputs(image::Packets& packets) noexcept {
   State& s = *state_;
   s.apply_forces();
   const std::array<std::uint8_t*, 3> packet = packets_of(packets);
-  for (const Move& m : s.put_back)
-    put_back(m, packet[static_cast<std::size_t>(m.packet)] + m.byte, s.memory.data() + m.address);
+  const std::uint8_t* const mem = s.memory.data();
+  for (const Move& m : s.put_back) {
+    std::uint8_t* const to = packet[static_cast<std::size_t>(m.packet)] + m.byte;
+    if (m.kind == Move::Kind::bit)
+      set_bit(to, m.detail, mem[m.address] != 0);
+    else
+      put_back(m, to, mem + m.address);
+  }
 }
 
 void Engine::drop_outputs(image::Packets& packets) noexcept {

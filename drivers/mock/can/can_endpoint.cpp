@@ -55,7 +55,7 @@ image::CanState CanSegment::Endpoint::state() const noexcept {
 Nanoseconds CanSegment::Endpoint::ready_at() const noexcept {
   if (pending_.empty() || !on_bus()) return kNever;
   Nanoseconds earliest = pending_.front().not_before;
-  if (segment_.config_.priority_mailboxes)
+  if (earliest > segment_.now_ && segment_.config_.priority_mailboxes)
     for (const Pending& p : pending_) earliest = std::min(earliest, p.not_before);
   return std::max(earliest, suspended_until_);
 }

@@ -42,7 +42,7 @@ class CanSegment::Endpoint final : public image::CanBus {
   /// Takes part in the traffic: plugged in, alive and not bus-off.
   bool on_bus() const noexcept { return connected_ && !bus_off() && (node_ == nullptr || node_->alive()); }
   bool bus_off() const noexcept { return segment_.now_ < recover_at_; }
-  /// Earliest time at which it offers a frame.
+  /// Earliest time at which it offers a frame; of what it offers already, some time until now.
   Nanoseconds ready_at() const noexcept;
   /// A frame in its mailbox, with its length counted.
   struct Pending {
@@ -63,6 +63,7 @@ class CanSegment::Endpoint final : public image::CanBus {
   void receive_error() noexcept {
     if (receive_errors_ < 128) ++receive_errors_;
   }
+  bool hears_well() const noexcept { return receive_errors_ == 0; }
   void received_well() noexcept {
     if (receive_errors_ > 0) --receive_errors_;
   }

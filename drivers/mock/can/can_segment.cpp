@@ -89,10 +89,11 @@ CanSegment::Endpoint& CanSegment::endpoint_of(std::uint64_t set) const noexcept 
 }
 
 Nanoseconds CanSegment::earliest_start() const noexcept {
+  const Nanoseconds free = std::max(bus_free_, now_);
   Nanoseconds earliest = kNever;
-  for (std::uint64_t rest = waiting_; rest != 0; rest &= rest - 1)
+  for (std::uint64_t rest = waiting_; rest != 0 && earliest > free; rest &= rest - 1)
     earliest = std::min(earliest, endpoint_of(rest).ready_at());
-  return earliest == kNever ? kNever : std::max({earliest, bus_free_, now_});
+  return std::max(earliest, free);
 }
 
 Nanoseconds CanSegment::earliest_node() const noexcept {
@@ -189,13 +190,16 @@ void CanSegment::deliver(const CanFrame& frame, std::uint64_t senders) noexcept 
   const bool filtered = !frame.extended && !frame.remote && frame.id < kFilterSize;
   for (std::size_t i = 0; i < endpoints_.size(); ++i) {
     Endpoint& e = *endpoints_[i];
-    if (senders >> i & 1 || !e.on_bus()) continue;
+    if (senders >> i & 1) continue;
+    const bool accepted = !filtered || e.accepts(frame.id);
+    // A frame that leaves nothing behind: most are for one node alone.
+    if (!accepted && e.hears_well() && e.due() > now_) continue;
+    if (!e.on_bus()) continue;
     e.received_well();
     if (e.node() == nullptr) {
       e.push(frame);
       continue;
     }
-    const bool accepted = !filtered || e.accepts(frame.id);
     if (accepted) e.node()->on_frame(frame);
     if (accepted || e.due() <= now_) e.plan(now_);
   }

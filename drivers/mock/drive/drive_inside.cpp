@@ -28,16 +28,16 @@ SimulatedDrive::Inside::Tuning::Values SimulatedDrive::Inside::Tuning::values(
 }
 
 // A loop that a master has tuned becomes the torque that it asks for.
-canopen::ServoCommand SimulatedDrive::Inside::by_own_gains(const canopen::ServoCommand& asked) noexcept {
+const canopen::ServoCommand& SimulatedDrive::Inside::by_own_gains(
+    const canopen::ServoCommand& asked) noexcept {
   using Loop = canopen::ServoCommand::Loop;
   const bool closed = asked.loop == Loop::velocity || asked.loop == Loop::position;
   if (!closed) {
     tuning.integral = 0.0;
     tuning.notch.reset();
   }
-  if (!closed || !tuning.there) return asked;
+  if (!closed || !tuning.there || tuning.as_they_came(dictionary)) return asked;
   const Tuning::Values tuned = tuning.values(dictionary);
-  if (tuned == tuning.own) return asked;
   const double step = static_cast<double>(config.servo_period_ns) * 1e-9;
   const double gain = static_cast<double>(tuned[0]) * 1e-6;
   const ServoGains gains{static_cast<double>(tuned[2]) * 1e-3, gain,
@@ -47,7 +47,8 @@ canopen::ServoCommand SimulatedDrive::Inside::by_own_gains(const canopen::ServoC
   const double permille = config.plant.rated_torque_nm / 1000.0, peak = config.plant.peak_torque_nm;
   const double high = std::min(asked.torque_limit_positive * permille, peak);
   const double low = -std::min(asked.torque_limit_negative * permille, peak);
-  canopen::ServoCommand out = asked;
+  canopen::ServoCommand& out = tuning.command;
+  out = asked;
   out.loop = Loop::torque;
   const double torque = servo_torque(gains, asked, asked.torque * permille,
                                      {static_cast<double>(plant.state().position), plant.velocity_rad_s()},
@@ -82,7 +83,7 @@ void SimulatedDrive::Inside::show_product(std::int64_t code) noexcept {
 
 void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
   while (next_servo <= t || next_communication <= t) {
-    if (spoiled(fault::Kind::freeze) && !spoiled(fault::Kind::kill)) {
+    if (any_lasting && spoiled(fault::Kind::freeze) && !spoiled(fault::Kind::kill)) {
       // Time passes it by.
       next_servo += next_servo <= t ? config.servo_period_ns : 0;
       if (next_communication > t) continue;
@@ -156,7 +157,7 @@ void SimulatedDrive::Inside::watch_heat() noexcept {
 void SimulatedDrive::Inside::servo_tick() noexcept {
   const std::int64_t before = plant.counts();
   plant.step(by_own_gains(command));
-  if (spoiled(fault::Kind::kill)) return;  // the mechanics alone
+  if (any_lasting && spoiled(fault::Kind::kill)) return;  // the mechanics alone
   if (config.plant.thermal_time_s > 0.0) watch_heat();
   read_inputs(before);
   inputs.hold_state = any_lasting && spoiled(fault::Kind::stuck_state) &&
@@ -173,7 +174,9 @@ void SimulatedDrive::Inside::servo_tick() noexcept {
 
 // Levels of the inputs; where the shaft itself moved a switch, the edge lies on the switch's boundary.
 void SimulatedDrive::Inside::read_inputs(std::int64_t before) noexcept {
-  if (config.switches.empty() && outside_level == inputs.active) return;
+  bool same = config.switches.empty();
+  for (std::size_t i = 0; i < canopen::kDriveInputs; ++i) same = same && outside_level[i] == inputs.active[i];
+  if (same) return;
   const std::int64_t error = plant.state().position - plant.counts();
   auto level = outside_level;
   auto edge = inputs.edge_position;

@@ -31,7 +31,7 @@ struct SimulatedDrive::Inside {
   void show_product(std::int64_t code) noexcept;
   void advance_to(Nanoseconds t) noexcept;
   void servo_tick() noexcept;
-  canopen::ServoCommand by_own_gains(const canopen::ServoCommand& asked) noexcept;
+  const canopen::ServoCommand& by_own_gains(const canopen::ServoCommand& asked) noexcept;
   void watch_heat() noexcept;
   void read_inputs(std::int64_t before) noexcept;
   bool inside(const DriveSwitch& s) const noexcept {
@@ -71,11 +71,17 @@ struct SimulatedDrive::Inside {
     static constexpr std::size_t kObjects = 5;
     using Values = std::array<std::int64_t, kObjects>;
     Values values(const canopen::ObjectDictionary& dictionary) const noexcept;
+    bool as_they_came(const canopen::ObjectDictionary& dictionary) const noexcept {
+      for (std::size_t i = 0; i < kObjects; ++i)
+        if (dictionary.value(slots[i]) != own[i]) return false;
+      return true;
+    }
     std::array<canopen::ObjectDictionary::Slot, kObjects> slots;
     bool there = false;
     Values own{};  ///< as they came
     double integral = 0.0;
     NotchFilter notch;
+    canopen::ServoCommand command;  ///< of the tuned loops
   };
   Tuning tuning{dictionary, config.data_sheet != nullptr};
   canopen::DriveInputs inputs;

@@ -113,7 +113,7 @@ void Plant::step(const canopen::ServoCommand& command) noexcept {
 }
 
 /// Spring and magnet take their time, either way.
-bool Plant::brake_closed(bool released) noexcept {
+inline bool Plant::brake_closed(bool released) noexcept {
   if (released != brake_holds_) {
     brake_moves_ = 0.0;
     return brake_holds_;
@@ -130,11 +130,12 @@ double Plant::cogging() const noexcept {
   return config_.cogging_nm != 0.0 ? config_.cogging_nm * std::sin(counts_ * cogging_per_count_) : 0.0;
 }
 
-double Plant::dry_friction(double omega) const noexcept {
-  const double dip = steps_ % dip_every_ < dip_steps_ ? config_.dip_torque_nm : 0.0;
-  if (config_.stribeck_friction_nm == 0.0) return config_.coulomb_friction_nm + dip;
+inline double Plant::dry_friction(double omega) const noexcept {
+  const bool dips = dip_steps_ > 0 && steps_ % dip_every_ < dip_steps_;
+  const double coulomb = config_.coulomb_friction_nm + (dips ? config_.dip_torque_nm : 0.0);
+  if (config_.stribeck_friction_nm == 0.0) return coulomb;
   const double x = omega / config_.stribeck_speed_rad_s;
-  return config_.coulomb_friction_nm + dip + config_.stribeck_friction_nm * std::exp(-x * x);
+  return coulomb + config_.stribeck_friction_nm * std::exp(-x * x);
 }
 
 /// From motor to load. Within the gap there is none, and where it is closed the faces press and never pull.
@@ -164,7 +165,7 @@ double Plant::noise() noexcept {
 }
 
 // Cascade of position (P with velocity fed forward) and velocity (PI with acceleration fed forward).
-double Plant::loop_torque(const canopen::ServoCommand& command) noexcept {
+inline double Plant::loop_torque(const canopen::ServoCommand& command) noexcept {
   using Loop = canopen::ServoCommand::Loop;
   const double peak = config_.peak_torque_nm;
   const double high = std::min(command.torque_limit_positive * permille_to_nm_, peak);
@@ -188,7 +189,7 @@ double Plant::loop_torque(const canopen::ServoCommand& command) noexcept {
   return torque;
 }
 
-void Plant::integrate(double torque_command, bool brake_closed) noexcept {
+inline void Plant::integrate(double torque_command, bool brake_closed) noexcept {
   torque_ += lag_ * (torque_command - torque_);
   const double load = config_.cogging_nm != 0.0 ? load_torque_ + cogging() : load_torque_;
   const double omega = (omega_ + h_over_j_ * (torque_ - load)) * viscous_divisor_;
@@ -215,7 +216,7 @@ void Plant::integrate_compliant(double torque_command, bool brake_closed) noexce
 }
 
 /// What is left of a speed at the rigid stops.
-double Plant::stopped_at_rigid_stops(double& counts, double omega) noexcept {
+inline double Plant::stopped_at_rigid_stops(double& counts, double omega) noexcept {
   at_stop_ = counts <= stop_min_counts_ || counts >= stop_max_counts_;
   if (!at_stop_) return omega;
   counts = std::clamp(counts, stop_min_counts_, stop_max_counts_);

@@ -52,10 +52,14 @@ Quality PointStage::quality(std::size_t group, Nanoseconds t) const noexcept {
 
 void PointStage::settle(ProcessImage& image) noexcept {
   if (start_ns_ < 0) start_ns_ = image.now.t_ns;
+  std::size_t group = groups_.size();
+  bool gone = false;  // that group, whose points stand together
   for (Point& p : points_) {
     if (!p.rule.input) continue;
-    const Group& g = groups_[p.rule.group];
-    const bool gone = g.lost || quality(p.rule.group, image.now.t_ns) == Quality::bad;
+    if (p.rule.group != group) {
+      group = p.rule.group;
+      gone = groups_[group].lost || quality(group, image.now.t_ns) == Quality::bad;
+    }
     if (gone && !p.rule.hold) {
       // At once: what may not be trusted does not wait for its debouncing.
       p.value = p.rule.digital ? (p.rule.loss != 0.0 ? 1.0 : 0.0) : p.rule.loss;
