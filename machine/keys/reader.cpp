@@ -330,16 +330,27 @@ std::string report_unknown(const Element& child, const Section& section, const s
   return near;
 }
 
-AxisUnits axis_units(const Element& table, const Section& section, AxisUnits around) {
-  if (!section.is_axis) return around;
+AxisUnits units_of_axis(const Element& table) {
   const Element* type = table.find("type");
   return type != nullptr && type->string == "rotary" ? AxisUnits::rotary : AxisUnits::linear;
+}
+
+/// What names an axis of the file has its units.
+AxisUnits axis_units(const Element& table, const Section& section, AxisUnits around, const Reading& reading) {
+  if (section.is_axis) return units_of_axis(table);
+  for (const Key& key : section.keys) {
+    const Element* letter = key.rule.refers == Refers::axis ? table.find(key.name) : nullptr;
+    if (letter == nullptr) continue;
+    const auto axis = reading.axes.find(letter->string);
+    if (axis != reading.axes.end()) return axis->second;
+  }
+  return around;
 }
 
 void read_table(const Element& table, const Section& section, void* object, const std::string& path,
                 AxisUnits axis, Reading& reading) {
   reading.places[path] = table.at;
-  axis = axis_units(table, section, axis);
+  axis = axis_units(table, section, axis, reading);
   for (const Element& child : table.children) {
     const auto known = std::find_if(section.keys.begin(), section.keys.end(),
                                     [&](const Key& k) { return k.name == child.key; });
@@ -373,6 +384,9 @@ void Reading::warning(Where at, const text::Entry& entry, std::vector<std::strin
 }
 
 void read_section(const Element& table, const Section& section, void* object, Reading& reading) {
+  if (const Element* axes = table.find("axis"))
+    for (const Element& axis : axes->children)
+      if (const Element* letter = axis.find("letter")) reading.axes[letter->string] = units_of_axis(axis);
   read_table(table, section, object, {}, AxisUnits::either, reading);
 }
 

@@ -21,6 +21,7 @@ struct Reading {
   std::vector<text::Finding> findings;
   Places places;
   std::set<std::string, std::less<>> unread;  ///< keys that are there but whose value was wrong
+  std::map<std::string, AxisUnits, std::less<>> axes;  ///< of the file, by letter
 
   void error(Where at, const text::Entry& entry, std::vector<std::string> arguments);
   void warning(Where at, const text::Entry& entry, std::vector<std::string> arguments);
