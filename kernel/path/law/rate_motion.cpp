@@ -158,6 +158,12 @@ void RateMotion::creep(const CourseView& view, double target) noexcept {
   }
 }
 
+/// A stop that leads there would have to come back to where a broken course rests.
+bool RateMotion::beyond_rest(const CourseView& view, const LawTime& at) noexcept {
+  const LawTime* rest = view.rests_at();
+  return rest != nullptr && at.since(*rest) > kSameTime;
+}
+
 bool RateMotion::rests_there(const CourseView& view) noexcept {
   const LawTime* rest = view.rests_at();
   if (rest == nullptr || !at_rest() || std::abs(time_.since(*rest)) > kSameTime) return false;

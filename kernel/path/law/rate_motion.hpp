@@ -68,6 +68,7 @@ class RateMotion {
   bool near_last_stop(const CourseView& view) const noexcept;
   void creep(const CourseView& view, double target) noexcept;
   bool rests_there(const CourseView& view) noexcept;
+  static bool beyond_rest(const CourseView& view, const LawTime& at) noexcept;
   void seek(const CourseView& view, double target, double period) noexcept;
   void surge(const CourseView& view, double target, double period) noexcept;
   void put_off(const CourseView& view, double period) noexcept;

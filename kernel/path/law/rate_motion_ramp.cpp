@@ -100,6 +100,7 @@ bool RateMotion::ramp(const CourseView& view, double target, double period) noex
     if (!rests && !even && std::abs(target - rate_) < kLittle) break;
     if (rests && ramp_.seconds() > known) break;
     if (ramp_.verify(view, limits_, places) != Fit::fits) continue;
+    if (rests && beyond_rest(view, ramp_.time())) continue;
     change_ = {rate_, slope_, rests ? 0.0 : target, ramp_.seconds(), 3};
     fits = rests || (even ? reaches_stop(view, ramp_.time(), target, period)
                           : follow_ramp(view, target, period, places));
@@ -165,7 +166,7 @@ bool RateMotion::ramp_ahead(const CourseView& view, const StopHint& hint) noexce
     const bool fits =
         at.since(time_) >= 0.0 && ramp_.begin(view, limits_, {at, ahead_.knot, rate_, 0.0}, 0.0, places) &&
         ramp_.plan(view, limits_, kPlan, places) && at.since(time_) / rate_ + ramp_.seconds() < least &&
-        ramp_.verify(view, limits_, places) == Fit::fits;
+        ramp_.verify(view, limits_, places) == Fit::fits && !beyond_rest(view, ramp_.time());
     left_ += places;
     if (!fits) continue;
     ramp_rests_ = ramp_.time();

@@ -24,6 +24,7 @@ Fit RateMotion::enter(const CourseView& view, double target, double seconds, int
                       double period) noexcept {
   left_ -= kTry;
   const RateChange change{rate_, slope_, target, seconds, power};
+  if (target == 0.0 && beyond_rest(view, time_.plus(change.at(seconds).passed))) return Fit::breaks;
   if (!may_keep(view, change, time_, knot_, limits_, left_)) return Fit::breaks;
   needed_ = kMostPlaces;
   if (left_ <= 0) return Fit::open;
