@@ -17,6 +17,8 @@ constexpr double kAmple = 1.2;       // s that lie ahead: the motion goes on in 
 constexpr double kLeastSpare = 0.2;  // s of them that a round may take at an override of 150 %
 constexpr double kPlannedBeside = 2.0;
 constexpr std::uint32_t kSpareEvents = 8;
+// STEP: so many ends of blocks are read ahead. Where the program is to run on, it rests there all the same.
+constexpr std::uint64_t kBlocksAhead = 3;
 
 /// Something has been done when it is through: STEP stops behind it. A programmed stop waits by itself.
 bool acts(const program::Command& command) {
@@ -142,6 +144,7 @@ bool Feeder::wants_more() const {
   const auto room = [](const path::Ring<Event>& ring) {
     return ring.capacity() - (ring.written() - ring.given_back()) > kSpareEvents;
   };
+  if (block_by_block_ && link_.events.written() - link_.events.given_back() >= kBlocksAhead) return false;
   return state_ == State::feeding && planner_.wants_more() && room(link_.events) && room(link_.at_once);
 }
 

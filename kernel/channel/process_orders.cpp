@@ -31,6 +31,7 @@ bool Process::order(const image::Request& request, cycle::ProcessContext& c) noe
         if (aside_ && !come_back(c)) return false;
         held_ = false;
         go_on_ = operator_waits();
+        if (request.kind == RequestKind::start && mode_ != image::Mode::step) run_on();
       } else if (request.kind != RequestKind::resume) {
         return start(mode_ == image::Mode::mdi,
                      request.kind == RequestKind::step || mode_ == image::Mode::step, c);

@@ -81,6 +81,7 @@ image::Answer Cycle::handle(const Request& request) noexcept {
   context.program_loaded = process < parts_.processes.size() && parts_.processes[process]->loaded();
   for (std::size_t p = 0; p < parts_.processes.size(); ++p)
     if (parts_.processes[p]->stopping()) context.stopping |= 1u << p;
+  context.holding = process < parts_.processes.size() && parts_.processes[process]->holding();
   context.path_wheel = process < parts_.processes.size() && path_wheels_[process].declared();
   if (request.kind == RequestKind::gear) {
     context.gears = gears_of(request.axis);

@@ -284,6 +284,57 @@ TEST(Step, is_followed_by_a_run_to_the_end_where_start_asks_for_auto) {
   }
 }
 
+std::string short_blocks(int count) {
+  std::string program = "N1 G1 X0 F6000\n";
+  for (int k = 1; k <= count; ++k) program += "X" + std::to_string(0.3 * k) + "\n";
+  return program + "M30\n";
+}
+
+TEST(Step, is_followed_by_a_run_that_rests_no_more_behind_what_was_planned_ahead) {
+  for (const bool with_mode : {true, false}) {
+    Rig rig(short_blocks(900));
+    if (with_mode) {
+      ASSERT_EQ(rig.ask(RequestKind::mode, static_cast<double>(image::Mode::step)), Refusal::none);
+    }
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_EQ(rig.ask(RequestKind::step), Refusal::none) << with_mode;
+      rig.run(1.0);
+      if (!with_mode) break;  // in AUTO what is planned goes on to its end
+    }
+    image::Request on;
+    on.kind = RequestKind::start;
+    on.mode = static_cast<std::int8_t>(image::Mode::automatic);
+    ASSERT_EQ(rig.ask(on), Refusal::none);
+    double fastest = 0.0;
+    ASSERT_TRUE(rig.until(
+        [&] {
+          fastest = std::max(fastest, rig.status().feed_mm_s);
+          return rig.state() == ProcessState::ended;
+        },
+        40.0))
+        << "in line " << rig.status().line << " of 900, at most " << fastest << " mm/s";
+    EXPECT_GT(fastest, 90.0);
+    EXPECT_EQ(rig.violations(), "");
+  }
+}
+
+TEST(Hold, is_taken_back_while_the_path_still_slows_down) {
+  Rig rig(kLongLine);
+  rig.start();
+  rig.run(0.6);
+  for (const RequestKind on : {RequestKind::resume, RequestKind::start}) {
+    ASSERT_EQ(rig.ask(RequestKind::hold), Refusal::none);
+    rig.run(0.03);
+    ASSERT_EQ(rig.state(), ProcessState::running);
+    ASSERT_EQ(rig.ask(on), Refusal::none);
+    rig.run(0.6);
+    EXPECT_GT(rig.status().feed_mm_s, 0.0);
+    EXPECT_EQ(rig.ask(on), on == RequestKind::resume ? Refusal::program_not_held : Refusal::program_runs);
+  }
+  ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  EXPECT_EQ(rig.violations(), "");
+}
+
 TEST(Start, takes_the_place_where_the_axes_stand_after_a_jog) {
   Rig rig("N10 G91 G1 X10 F6000\nN20 M30\n");
   ASSERT_EQ(rig.ask(RequestKind::mode, static_cast<double>(image::Mode::manual)), Refusal::none);

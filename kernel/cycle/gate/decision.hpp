@@ -142,6 +142,7 @@ class Decision {
   }
   bool start() noexcept;
   bool step() noexcept;
+  bool goes_on() const noexcept;
   bool runs_on() const noexcept;
   bool resume() noexcept;
   bool place(bool write) noexcept;

@@ -338,6 +338,13 @@ bool Decision::mode_of_request() noexcept {
   return same || runs_on() || (no_program_of(r_.process) && not_held_by_another());
 }
 
+/// Held, or waiting for the operator; or about to be held: its path need not have come to rest.
+bool Decision::goes_on() const noexcept {
+  const ProcessState s = state(r_.process);
+  return s == ProcessState::held || s == ProcessState::waiting ||
+         (s == ProcessState::running && c_.holding);
+}
+
 /// A program that is stepped through may be started to run to its end.
 bool Decision::runs_on() const noexcept {
   const ProcessState s = state(r_.process);
@@ -348,9 +355,7 @@ bool Decision::runs_on() const noexcept {
 
 /// What is planned of a program in AUTO goes on to its end: a step would be all of it.
 bool Decision::step() noexcept {
-  const ProcessState s = state(r_.process);
-  if ((s == ProcessState::held || s == ProcessState::waiting) &&
-      c_.image->processes[static_cast<std::size_t>(r_.process)].mode != Mode::step)
+  if (goes_on() && c_.image->processes[static_cast<std::size_t>(r_.process)].mode != Mode::step)
     return refuse(Refusal::not_stepping);
   return start();
 }
@@ -358,7 +363,7 @@ bool Decision::step() noexcept {
 bool Decision::start() noexcept {
   const ProcessState s = state(r_.process);
   // A hold, M00 and the end of a block in STEP go on by the same button.
-  if (s == ProcessState::held || s == ProcessState::waiting) return resume();
+  if (goes_on()) return resume();
   if (busy(s)) return under_way(r_.process);
   if (!c_.program_loaded) return refuse(Refusal::no_program);
   if (!c_.start_permitted) return refuse(Refusal::start_not_permitted);
@@ -381,11 +386,12 @@ bool Decision::resume() noexcept {
   const ProcessState s = state(r_.process);
   if (!busy(s)) return refuse(Refusal::program_does_not_run, -1, r_.process);
   if ((c_.stopping >> r_.process & 1u) != 0) return under_way(r_.process);
-  if (s == ProcessState::running) return refuse(Refusal::program_not_held, -1, r_.process);
+  if (!goes_on()) return refuse(Refusal::program_not_held, -1, r_.process);
   // Behind an open door nothing is begun that its closing would let go.
   for (const Axis& a : c_.axes)
     if (of_process(a) && !a.asleep() && !feed_enabled(a)) return false;
   if (!no_alarm(Reaction::stop_at_block_end) || !no_homing() || !not_held_by_another()) return false;
+  if (s == ProcessState::running) return true;  // on its path, where it slows down
   for (const Axis& a : c_.axes)
     if (of_process(a) && a.moving()) return refuse(Refusal::axis_moves, a.index());
   return as_it_was_held();
