@@ -73,6 +73,27 @@ TEST(DrivenCourse, is_chosen_for_two_elements_and_more_and_for_an_arc_that_needs
   EXPECT_EQ(courses(turned, mill()), 2) << "with a rest where the feed is another";
 }
 
+TEST(DrivenCourse, goes_through_more_blocks_in_a_few_knots_than_the_track_has_room_for) {
+  for (const double length : {1e-6, 1e-4, 1e-3}) {
+    Machine m;
+    std::vector<Element> elements{line_to(10, 0, 0, 100)};
+    for (int k = 1; k <= 30000; ++k) elements.push_back(line_to(10 + k * length, 0, 0, 100));
+    elements.push_back(line_to(60, 0, 0, 100));
+    for (std::size_t n = 0; n < elements.size(); ++n) elements[n].tag.line = static_cast<std::int32_t>(n) + 1;
+    load(m, elements);
+    std::int32_t line = 0;
+    m.trip.ended = m.until([&](const Sample& s) {
+      EXPECT_GE(s.tag.line, line);
+      line = std::max(line, s.tag.line);
+      return s.state == FollowerState::idle;
+    });
+    EXPECT_TRUE(m.trip.ended) << length << ", in line " << line;
+    EXPECT_EQ(line, 30002);
+    EXPECT_NEAR(m.last.position[0], 60.0, 1e-9);
+    EXPECT_EQ(m.last.starved, 0u) << length;
+  }
+}
+
 TEST(DrivenCourse, holds_in_the_next_cycle_rests_on_the_path_and_goes_on) {
   for (const int at : {300, 617, 1001, 1600}) {
     Machine m;

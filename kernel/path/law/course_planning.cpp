@@ -69,6 +69,7 @@ void CoursePlanning::place(Leg leg) {
     base_ = {};
     length_ = section_ = 0.0;
     given_ = 0;
+    given_until_ = 0.0;
     looked_ = look_at_ = 0;
     stop_ = {};
     sure_ = 0.0;
@@ -216,14 +217,30 @@ void CoursePlanning::find_stops() {
   }
 }
 
+/// Up to a knot. Where the program has far more of them than cycles can tell apart, several become one: the
+/// track has room for so many.
+void CoursePlanning::give_pieces(const Knot& to) {
+  constexpr double kUsual = 256.0, kPerSecond = 8000.0, kMost = 2048.0;
+  const double seconds = to.t.since({});
+  const double most = std::min(kMost, kUsual + kPerSecond * (seconds - given_until_));
+  given_until_ = seconds;
+  const auto end = extent_.complete ? pieces_.end()
+                                    : std::find_if(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
+                                        return piece.start > to.place;
+                                      });
+  const auto count = static_cast<std::size_t>(end - pieces_.begin());
+  const auto together = static_cast<std::size_t>(std::ceil(static_cast<double>(count) / most));
+  for (std::size_t n = 0; n < count; n += together, ++extent_.pieces) {
+    const std::size_t last = std::min(count, n + together) - 1;
+    sink_.put(last == n ? pieces_[n] : joined(pieces_[n], pieces_[last], config_.axis_count));
+  }
+  pieces_.erase(pieces_.begin(), end);
+}
+
 void CoursePlanning::give() {
   for (; given_ < view_.knots.end(); ++given_) sink_.put(view_.knots[given_]);
   extent_.knots = given_;
-  const double place = view_.knot(view_.last())->place;
-  for (; !pieces_.empty() && (extent_.complete || pieces_.front().start <= place); ++extent_.pieces) {
-    sink_.put(pieces_.front());
-    pieces_.pop_front();
-  }
+  give_pieces(*view_.knot(view_.last()));
   const std::int64_t needed = std::min(looked_, std::max<std::int64_t>(0, stop_.knot)) - 4;
   view_.knots.forget_before(static_cast<std::size_t>(std::max<std::int64_t>(0, needed)));
   sink_.extend(extent_);

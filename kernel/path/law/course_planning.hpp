@@ -56,6 +56,7 @@ class CoursePlanning final : public CourseLaw, private KnotSink {
   void look_for_break();
   void find_stops();
   void give();
+  void give_pieces(const Knot& to);
 
   Config config_;
   CourseSink& sink_;
@@ -78,6 +79,7 @@ class CoursePlanning final : public CourseLaw, private KnotSink {
   LawTime base_;              ///< the same as time
   std::deque<Piece> pieces_;  ///< that no knot given lies on yet
   std::size_t given_ = 0;     ///< knots
+  double given_until_ = 0.0;  ///< law time of the last of them
   std::int64_t looked_ = 0;   ///< knots before this have had their stop looked for
   std::int64_t look_at_ = 0;  ///< not before this knot is there
   StopHint stop_;

@@ -148,6 +148,21 @@ Vector spline_control(const Piece& p, double s, double spacing, int axes) {
   return x;
 }
 
+Piece joined(const Piece& first, const Piece& last, int axes) {
+  Piece out = last;
+  out.shape = Piece::Shape::line;
+  out.start = first.start;
+  out.length = out.full = last.start + last.length - first.start;
+  out.offset = 0.0;
+  out.c0 = position(first, 0.0, axes);
+  out.c5 = position(last, last.length, axes);
+  out.c1 = {};
+  if (out.length > 0.0)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(axes); ++i)
+      out.c1[i] = (out.c5[i] - out.c0[i]) / out.length;
+  return out;
+}
+
 Piece part(const Piece& piece, double from, double length) {
   Piece p = piece;
   p.offset = piece.offset + from;

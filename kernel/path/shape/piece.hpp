@@ -48,6 +48,10 @@ PathPoint evaluate(const Piece& piece, double s, int axes) noexcept;
 /// the parameter apart: the spline is exact at the knots. Goes on beyond the ends of the piece.
 Vector spline_control(const Piece& piece, double s, double spacing, int axes);
 
+/// From the begin of one piece to the end of another one further on, as a straight of the way between them, in
+/// the element of the last one.
+Piece joined(const Piece& first, const Piece& last, int axes);
+
 /// Part [from, from + length] of a piece.
 Piece part(const Piece& piece, double from, double length);
 
