@@ -76,10 +76,13 @@ void Exchange::send(const image::ProcessImage& image, WriteSink& sink) noexcept 
     BlockState& block = blocks_[n];
     if (!writes(map_.blocks[n].function) || block.of_inverter) continue;
     bool changed = !block.armed;
-    for (const Carried& p : block.points)
-      changed = set_raw_value(map_.blocks[n], p.point, stages_[block.unit].raw(p.in_stage, image.packets),
-                              block.data) ||
-                changed;
+    const image::PointStage& stage = stages_[block.unit];
+    const bool coils = carries_bits(map_.blocks[n].function);
+    for (const Carried& p : block.points) {
+      if (coils && stage.level(p.in_stage, image.packets) == block.data.bit(p.point.offset)) continue;
+      changed =
+          set_raw_value(map_.blocks[n], p.point, stage.raw(p.in_stage, image.packets), block.data) || changed;
+    }
     if (!changed) continue;
     block.armed = true;
     sink.write(n, block.data, image.now.t_ns);

@@ -22,19 +22,6 @@ double velocity_gain_of(const PlantConfig& c) noexcept {
   return c.velocity_gain > 0.0 ? c.velocity_gain : total_inertia_of(c) * kDefaultVelocityBandwidth;
 }
 
-double servo_torque(const ServoGains& gains, const canopen::ServoCommand& command, double torque,
-                    const ServoMeasured& measured, double low, double high, double& integral) noexcept {
-  double velocity = command.velocity;
-  if (command.loop == canopen::ServoCommand::Loop::position)
-    velocity += gains.position_gain * (command.position - measured.position_counts);
-  const double error = velocity * gains.rad_per_count - measured.velocity_rad_s;
-  torque += gains.inertia_kg_m2 * command.acceleration * gains.rad_per_count + gains.velocity_gain * error;
-  const double wanted = torque + integral;
-  if (!(wanted > high && error > 0.0) && !(wanted < low && error < 0.0))
-    integral += gains.integral_step * error;
-  return torque + integral;
-}
-
 // Bilinear, s = k (z - 1) / (z + 1) with k that keeps the centre.
 void NotchFilter::set(double hz, double depth, double step) noexcept {
   if (hz == hz_ && depth == depth_) return;

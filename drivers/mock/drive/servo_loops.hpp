@@ -25,8 +25,19 @@ struct ServoMeasured {
 
 /// What the loops add to the torque of a command (N m), which is limited to `low` ... `high` behind them; the
 /// integral is carried from step to step and stands still in the direction of a limit. real-time safe.
-double servo_torque(const ServoGains& gains, const canopen::ServoCommand& command, double torque_nm,
-                    const ServoMeasured& measured, double low, double high, double& integral) noexcept;
+inline double servo_torque(const ServoGains& gains, const canopen::ServoCommand& command, double torque_nm,
+                           const ServoMeasured& measured, double low, double high,
+                           double& integral) noexcept {
+  double velocity = command.velocity;
+  if (command.loop == canopen::ServoCommand::Loop::position)
+    velocity += gains.position_gain * (command.position - measured.position_counts);
+  const double error = velocity * gains.rad_per_count - measured.velocity_rad_s;
+  torque_nm += gains.inertia_kg_m2 * command.acceleration * gains.rad_per_count + gains.velocity_gain * error;
+  const double wanted = torque_nm + integral;
+  if (!(wanted > high && error > 0.0) && !(wanted < low && error < 0.0))
+    integral += gains.integral_step * error;
+  return torque_nm + integral;
+}
 
 /// A notch in the torque, (s^2 + 2 d w s + w^2) / (s^2 + 2 w s + w^2), sampled with its centre in place. All
 /// of it is real-time safe.

@@ -267,28 +267,12 @@ void ServoProfile::supervise() noexcept {
   fault(kFollowingError, false);
 }
 
-double ServoProfile::max_speed() const noexcept {
-  return static_cast<double>(v_.max_motor_speed * settings_.counts_per_rev) / 60.0;
-}
-
-bool ServoProfile::standstill() const noexcept {
-  return std::abs(servo_.velocity) < 0.05 * static_cast<double>(settings_.counts_per_rev);
-}
-
 void ServoProfile::hold_actual() noexcept {
   demand_ = {static_cast<double>(servo_.position), 0.0, 0.0};
   cyclic_target_ = demand_.position;
   ticks_left_ = 0;
   previous_segment_velocity_ = 0.0;
   torque_demand_ = 0.0;
-}
-
-void ServoProfile::command_position() noexcept {
-  command_.loop = ServoCommand::Loop::position;
-  command_.position = demand_.position;
-  command_.velocity = demand_.velocity;
-  command_.acceleration = demand_.acceleration;
-  command_.torque = 0.0;
 }
 
 void ServoProfile::generate() noexcept {
@@ -350,12 +334,6 @@ void ServoProfile::stop_motion(StopKind kind, double slow_down) noexcept {
   at_rest_ = demand_.velocity == 0.0 && standstill();
 }
 
-bool ServoProfile::stopped_by_limit_switch(double direction) const noexcept {
-  if (!settings_.limit_switches_stop) return false;
-  return (direction > 0.0 && inputs_.on(DriveInput::positive_limit)) ||
-         (direction < 0.0 && inputs_.on(DriveInput::negative_limit));
-}
-
 std::uint16_t ServoProfile::statusword() const noexcept {
   using namespace statusword;
   auto word = static_cast<std::uint16_t>(encode_state(power_.state()) | kRemote);
@@ -382,13 +360,18 @@ void ServoProfile::refresh() noexcept {
       controlled ? static_cast<std::int64_t>(std::floor(command_.position + 0.5)) - origin_ : actual;
   v_.position_demand = cut(demand);
   v_.following_actual = cut(demand - actual);
-  v_.velocity_demand = static_cast<std::int64_t>(power_.energised() ? command_.velocity : 0.0);
-  const double unit = vl_unit();
-  const auto speed = [unit](double counts_s) {
-    return static_cast<std::int64_t>(std::clamp(std::round(counts_s / unit), -32768.0, 32767.0));
-  };
-  v_.vl_demand = speed(power_.energised() ? command_.velocity : 0.0);
-  v_.vl_actual = speed(servo_.velocity);
+  const double asked = power_.energised() ? command_.velocity : 0.0;
+  v_.velocity_demand = static_cast<std::int64_t>(asked);
+  if (asked == 0.0 && servo_.velocity == 0.0) {  // as most axes most of the time: nothing to convert
+    v_.vl_demand = v_.vl_actual = 0;
+  } else {
+    const double unit = vl_unit();
+    const auto speed = [unit](double counts_s) {
+      return static_cast<std::int64_t>(std::clamp(std::round(counts_s / unit), -32768.0, 32767.0));
+    };
+    v_.vl_demand = speed(asked);
+    v_.vl_actual = speed(servo_.velocity);
+  }
   v_.ip_buffer_position = buffer_.count();
   v_.torque_actual = v_.current_actual = static_cast<std::int64_t>(servo_.torque);
   v_.torque_demand = static_cast<std::int64_t>(command_.loop == ServoCommand::Loop::torque ? command_.torque

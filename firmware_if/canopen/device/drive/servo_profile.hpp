@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -67,11 +68,21 @@ class ServoProfile final : public DeviceProfile {
   void generate() noexcept;
   void run_mode() noexcept;
   void hold_actual() noexcept;
-  void command_position() noexcept;
+  void command_position() noexcept {
+    command_.loop = ServoCommand::Loop::position;
+    command_.position = demand_.position;
+    command_.velocity = demand_.velocity;
+    command_.acceleration = demand_.acceleration;
+    command_.torque = 0.0;
+  }
   void stop_motion(StopKind kind, double slow_down) noexcept;
   double slow_down() const noexcept;
   double quick_stop_ramp() const noexcept;
-  bool stopped_by_limit_switch(double direction) const noexcept;
+  bool stopped_by_limit_switch(double direction) const noexcept {
+    if (!settings_.limit_switches_stop) return false;
+    return (direction > 0.0 && inputs_.on(DriveInput::positive_limit)) ||
+           (direction < 0.0 && inputs_.on(DriveInput::negative_limit));
+  }
   bool halted() const noexcept { return settings_.quirks.halt && (v_.controlword & controlword::kHalt); }
   AbortCode homing_method_taken(std::int64_t value) const noexcept;
 
@@ -119,9 +130,13 @@ class ServoProfile final : public DeviceProfile {
   double acceleration_of(double asked) const noexcept;
   double deceleration_of(double asked) const noexcept;
   void ramp_to(double velocity, double acceleration, double deceleration) noexcept;
-  double max_speed() const noexcept;
+  double max_speed() const noexcept {
+    return static_cast<double>(v_.max_motor_speed * settings_.counts_per_rev) / 60.0;
+  }
   void interpolation_period_changed() noexcept;
-  bool standstill() const noexcept;
+  bool standstill() const noexcept {
+    return std::abs(servo_.velocity) < 0.05 * static_cast<double>(settings_.counts_per_rev);
+  }
   bool in_fault() const noexcept {
     return power_.state() == image::DriveState::fault ||
            power_.state() == image::DriveState::fault_reaction_active;
