@@ -71,11 +71,6 @@ struct SimulatedDrive::Inside {
     static constexpr std::size_t kObjects = 5;
     using Values = std::array<std::int64_t, kObjects>;
     Values values(const canopen::ObjectDictionary& dictionary) const noexcept;
-    bool as_they_came(const canopen::ObjectDictionary& dictionary) const noexcept {
-      for (std::size_t i = 0; i < kObjects; ++i)
-        if (dictionary.value(slots[i]) != own[i]) return false;
-      return true;
-    }
     std::array<canopen::ObjectDictionary::Slot, kObjects> slots;
     bool there = false;
     Values own{};  ///< as they came
