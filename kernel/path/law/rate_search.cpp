@@ -16,7 +16,7 @@ constexpr double kShortest = RateChange::kShortest;
 constexpr double kFarStop = 0.1;  // s; those between knots of a curve are nearer
 
 /// Law time that passes in a stop from a constant rate of 1, as a share of its seconds.
-double share_passed(int power) noexcept { return (power + 1.0) / (power + 3.0); }
+double share_passed(int power) noexcept { return RateChange{1.0, 0.0, 0.0, 1.0, power}.at(1.0).passed; }
 
 }  // namespace
 
