@@ -94,7 +94,7 @@ class Process final : public cycle::ProcessInCycle {
   /// mm by which the last tap went beyond its depth; negative: it did not reach it. In the cycle's thread.
   double tap_overshoot() const noexcept { return tap_overshoot_; }
   bool stopping() const noexcept override { return stopping_.load(std::memory_order_relaxed); }
-  bool holding() const noexcept override { return running_ && held_; }
+  bool holding() const noexcept override { return running_ && held_ && !follower_.at_rest(); }
 
  private:
   enum class Stage : std::uint8_t { none, entered, handshaking, waiting };

@@ -72,7 +72,7 @@ class ProcessInCycle {
   virtual void answered(const image::Answer&) noexcept {}
   /// The program has been ended, and its path is not at rest yet. For any thread.
   virtual bool stopping() const noexcept { return false; }
-  /// The program is held, or slows down to be. In the cycle's thread.
+  /// The program slows down on its path to be held. In the cycle's thread.
   virtual bool holding() const noexcept { return false; }
 };
 

@@ -338,7 +338,7 @@ bool Decision::mode_of_request() noexcept {
   return same || runs_on() || (no_program_of(r_.process) && not_held_by_another());
 }
 
-/// Held, or waiting for the operator; or about to be held: its path need not have come to rest.
+/// Held, or waiting for the operator; or about to be held, as long as it moves on its path.
 bool Decision::goes_on() const noexcept {
   const ProcessState s = state(r_.process);
   return s == ProcessState::held || s == ProcessState::waiting ||

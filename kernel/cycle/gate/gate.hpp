@@ -105,7 +105,7 @@ struct GateContext {
   image::Reaction reaction = image::Reaction::none;  ///< in force
   image::AlarmNumber first_alarm = 0;
   bool program_loaded = false;                 ///< of the request's process
-  bool holding = false;                        ///< it is held, or slows down to be
+  bool holding = false;                        ///< it slows down on its path to be held
   bool path_wheel = false;                     ///< the process of the request has one
   const axis::ElectronicGear* gear = nullptr;  ///< that the request names, nullptr: there is none
   int gears = 0;                               ///< of the request's axis
