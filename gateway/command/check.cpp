@@ -133,6 +133,14 @@ nlohmann::json describe(const ProgramCheck& check, const program::MachineModel& 
   return json;
 }
 
+/// Of a feed in mm/min: none, and the first two digits of one below 10.
+int decimals_of(double feed) {
+  constexpr int kMost = 4;
+  int decimals = 0;
+  for (double least = 10.0; decimals < kMost && feed < least; least /= 10.0) ++decimals;
+  return decimals;
+}
+
 /// The table of the slowest places.
 void print_slowest(const ProgramCheck& check, const program::MachineModel& model) {
   if (check.slowest.empty()) return;
@@ -143,11 +151,13 @@ void print_slowest(const ProgramCheck& check, const program::MachineModel& model
     std::string where = place.first.file != 0 ? sentence(kSlowSubprogram, {first})
                         : one                 ? sentence(kSlowBlock, {first})
                                               : sentence(kSlowBlocks, {first, last});
+    const int decimals = decimals_of(60.0 * place.feed);
     if (place.times > 1) where = sentence(kSlowTimes, {where, std::to_string(place.times)});
-    print_line("    " + sentence(kSlowLine, {where, text::number(60.0 * place.slowest, 0),
-                                             text::number(60.0 * place.feed, 0), text::number(place.lost, 2),
-                                             sentence(kBrakes[static_cast<std::size_t>(place.brake)],
-                                                      {letter_of(place, model)})}));
+    print_line("    " +
+               sentence(kSlowLine, {where, text::number(60.0 * place.slowest, decimals),
+                                    text::number(60.0 * place.feed, decimals), text::number(place.lost, 2),
+                                    sentence(kBrakes[static_cast<std::size_t>(place.brake)],
+                                             {letter_of(place, model)})}));
   }
 }
 

@@ -19,7 +19,8 @@ Survey::Survey(const Config& config, const Vector& start) : time_(config, start,
 bool Survey::add(const Element& element) {
   Element numbered = element;
   numbered.tag.command = first_ + elements_.size();
-  elements_.push_back({element.tag, element.kind == Element::Kind::rapid ? 0.0 : element.feed});
+  elements_.push_back(
+      {element.tag, element.kind == Element::Kind::rapid ? 0.0 : element.feed, element.revolutions});
   if (time_.add(numbered)) return true;
   elements_.pop_back();
   return false;
@@ -44,7 +45,8 @@ void Survey::put(const Moment& moment) {
     ++first_;
   }
   if (elements_.empty()) return;
-  const Programmed& in = elements_.front();
+  Programmed in = elements_.front();
+  if (moment.turns > 0.0 && in.revolutions > 0.0) in.feed *= moment.turns / in.revolutions;
   const double feed_before = std::exchange(feed_, moment.feed);
   if (in.feed == 0.0 || moment.feed >= kSlow * in.feed) return close();
   // The way up from a rest is a place of its own.

@@ -15,7 +15,7 @@ struct SlowPlace {
   double seconds = 0.0;  ///< that it takes, all times together
   double lost = 0.0;     ///< of these: what the same way would not take at the programmed feed
   double slowest = 0.0;  ///< mm/s
-  double feed = 0.0;     ///< programmed there, mm/s
+  double feed = 0.0;     ///< programmed where it is slowest, mm/s
   Brake brake = Brake::shape;
   int axis = -1;  ///< path axis of a limit
 };
@@ -43,6 +43,7 @@ class Survey final : private MomentSink {
   struct Programmed {
     Tag tag;
     double feed;  ///< 0: a rapid
+    double revolutions;
   };
   struct Open {
     SlowPlace place;

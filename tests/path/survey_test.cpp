@@ -102,6 +102,35 @@ TEST(Survey, of_a_slow_axis_names_its_velocity) {
   EXPECT_TRUE(found);
 }
 
+TEST(Survey, compares_with_the_feed_that_a_constant_surface_speed_has_at_each_radius) {
+  constexpr double kCutting = 2500.0, kPerTurn = 0.2;  // mm/s, mm
+  const auto turns = [](double radius) { return kCutting / (2 * std::numbers::pi * radius); };
+  const auto face = [&](double edge) {
+    Config config = mill();
+    config.limits[0].velocity = 8.0;
+    Survey survey(config, {40});
+    std::vector<Element> e{line_to(edge, 0, 0, 0), line_to(edge, -5, 0, 0)};
+    const double halfway = 0.5 * (40 + edge);
+    for (const double radius : {halfway, edge}) {
+      Element& next = radius == edge ? e[1] : e[0];
+      next.revolutions = turns(radius);
+      next.feed = kPerTurn * next.revolutions;
+      next.surface = {kCutting, 0.0, 1.0, turns(edge), 0};
+      next.tag.line = radius == edge ? 2 : 1;
+      EXPECT_TRUE(survey.add(next));
+    }
+    survey.rest();
+    return survey.slowest();
+  };
+  for (const SlowPlace& p : face(12)) EXPECT_EQ(p.brake, Brake::rest) << "2 mm/s at 40 mm, 6.6 at 12 mm";
+  const auto places = face(6);
+  ASSERT_FALSE(places.empty());
+  EXPECT_EQ(places.front().brake, Brake::velocity) << "13 mm/s at 6 mm are too much for the first axis";
+  EXPECT_EQ(places.front().axis, 0);
+  EXPECT_EQ(places.front().first.line, 1);
+  EXPECT_GT(places.front().feed, kPerTurn * turns(10)) << "not that of halfway";
+}
+
 TEST(Survey, names_nothing_where_the_feed_is_reached_and_no_more_than_ten_places) {
   for (const SlowPlace& p : slow_places(mill(), circle(40, 800, 20))) EXPECT_EQ(p.brake, Brake::rest);
   std::vector<Element> stops;

@@ -111,6 +111,7 @@ void SpeedForecast::place(const Run& run, double end) {
     p.leg = &run.leg(leg);
     p.at = run.at(u, leg);
     p.cap = feed_at(*p.leg, p.at);
+    p.turns = p.leg->surface.speed > 0.0 ? turns_at(*p.leg, p.at) : 0.0;
     if (transformation_ != &identity()) p.at = to_axes(*transformation_, p.at, axes_);
   }
 }
@@ -336,7 +337,7 @@ void SpeedForecast::tell(bool last) {
     const double seconds = 3.0 * (next.u - from.u) / kTime / std::max(1e-15, z0 * z0 + z0 * z1 + z1 * z1);
     const Why& why = from.y > next.y ? from.why : next.why;
     const Place& p = places_[place_at(0.5 * (from.u + next.u))];
-    sink_.put({seconds, (next.u - from.u) / seconds, why.brake, why.axis, p.leg->piece.tag.command});
+    sink_.put({seconds, (next.u - from.u) / seconds, why.brake, why.axis, p.leg->piece.tag.command, p.turns});
     seconds_ += seconds;
     z0 = z1;
   }

@@ -43,6 +43,7 @@ class SpeedForecast {
   struct Place {
     Vector at;  // of the axes
     const Leg* leg;
+    double turns;                         // of the spindle; 0: the same all along the leg
     double cap, jerk_root, acceleration;  // speed, and along the path
     Why why, jerk_why, acceleration_why;
     int bends;  // before it, in the window

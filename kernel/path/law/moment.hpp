@@ -22,6 +22,7 @@ struct Moment {
   Brake brake = Brake::shape;
   int axis = -1;              ///< path axis of a limit
   std::uint64_t command = 0;  ///< Tag::command of the element
+  double turns = 0.0;         ///< revolutions a second that it is planned for there; 0: Element::revolutions
 };
 
 /// Where moments go, in order. A rest is one that takes no time and has no feed.
