@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/path/axes/transformation.hpp"
+#include "kernel/path/law/stop_search.hpp"
 
 namespace servogate::path {
 namespace {
@@ -15,7 +17,8 @@ constexpr double kInside = 1.0 - 1e-9;  // of an interval: the place is surely i
 constexpr double kAbove = 0.996;        // the same above full rate
 
 /// s between the places that are looked at.
-double spacing(const RateChange& change) noexcept {
+template <class Change>
+double spacing(const Change& change) noexcept {
   if (std::max(change.r0, change.r1) > 1.0) return kPlace;
   return (change.seconds > 1.0 ? 3.0 : change.seconds > 0.5 ? 2.0 : 1.0) * kPlace;
 }
@@ -223,9 +226,35 @@ bool Interval::keeps(double in, const RateState& rate, const RateLimits& limits)
   return true;
 }
 
+bool Interval::bends(double in, double rate, double slope, const RateLimits& limits, double share,
+                     double& least, double& largest) const noexcept {
+  const double s = in / tau_.seconds, f = tau_.at(s), w = tau_.d1(s), w2 = tau_.d2(s), w3 = tau_.d3(s);
+  const double v = w * rate, a = w2 * rate * rate + w * slope;
+  const double j = w3 * rate * rate * rate + 3.0 * w2 * rate * slope;
+  least = -std::numeric_limits<double>::infinity();
+  largest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(limits.axes); ++i) {
+    const AxisLimits& l = limits.limits[i];
+    const double y2 = bend_[i] + f * third_[i], y1 = slope_[i] + f * (bend_[i] + 0.5 * f * third_[i]);
+    if (!(std::abs(y1 * v) <= l.velocity)) return false;
+    if (!(std::abs(y2 * v * v + y1 * a) <= share * l.acceleration)) return false;
+    const double by_course = third_[i] * v * v * v + 3.0 * y2 * v * a + y1 * j;
+    const double by_bend = y1 * w, room = share * l.jerk;
+    if (by_bend == 0.0) {
+      if (!(std::abs(by_course) <= room)) return false;
+      continue;
+    }
+    const double middle = -by_course / by_bend, aside = room / std::abs(by_bend);
+    least = std::max(least, middle - aside);
+    largest = std::min(largest, middle + aside);
+  }
+  return least <= largest;
+}
+
 /// Goes on to another interval; both sides of the knots between.
-bool Verification::keeps_at_knots(const CourseView& view, std::int64_t to, const RateLimits& limits,
-                                  int& places) noexcept {
+template <class Change>
+bool VerificationOf<Change>::keeps_at_knots(const CourseView& view, std::int64_t to, const RateLimits& limits,
+                                            int& places) noexcept {
   const double p0 = change_.at(last_).passed, p1 = change_.at(t_).passed;
   while (interval_.knot() != to) {
     const bool on = to > interval_.knot();
@@ -243,8 +272,9 @@ bool Verification::keeps_at_knots(const CourseView& view, std::int64_t to, const
   return true;
 }
 
-void Verification::begin(const RateChange& change, const LawTime& from, std::int64_t near_knot,
-                         double beyond) noexcept {
+template <class Change>
+void VerificationOf<Change>::begin(const Change& change, const LawTime& from, std::int64_t near_knot,
+                                   double beyond) noexcept {
   change_ = change;
   beyond_ = beyond;
   from_ = from;
@@ -252,7 +282,8 @@ void Verification::begin(const RateChange& change, const LawTime& from, std::int
   t_ = last_ = 0.0;
 }
 
-Fit Verification::go(const CourseView& view, const RateLimits& limits, int& places) noexcept {
+template <class Change>
+Fit VerificationOf<Change>::go(const CourseView& view, const RateLimits& limits, int& places) noexcept {
   CoursePlace place(view);
   place.set_knot(before_);
   if (!interval_.take(view, before_, limits)) return Fit::unpublished;
@@ -285,6 +316,9 @@ Fit Verification::go(const CourseView& view, const RateLimits& limits, int& plac
     return reaches_stop(view, at, change_.r1, beyond_) ? Fit::fits : Fit::unpublished;
   }
 }
+
+template class VerificationOf<RateChange>;
+template class VerificationOf<StopPlan>;
 
 /// Who does not come to rest must reach the last stop that is known, and not be at it already by rounding.
 bool reaches_stop(const CourseView& view, const LawTime& at, double r1, double beyond) noexcept {

@@ -100,6 +100,10 @@ class Interval {
   /// The limits hold `in` seconds of law time behind its begin at this rate; before and behind it the course
   /// rests.
   bool keeps(double in, const RateState& rate, const RateLimits& limits) const noexcept;
+  /// The least and the largest second derivative of the rate that keep the jerk of all axes there; false:
+  /// there is none, or velocity or acceleration exceed `share` of the limits.
+  bool bends(double in, double rate, double slope, const RateLimits& limits, double share, double& least,
+             double& largest) const noexcept;
   /// The course `in` seconds behind its begin, with velocity and acceleration at this rate.
   CoursePoint at(double in, double rate, double slope, int axes) const noexcept;
   /// The speed along the path, in the measure of the axes, and its derivatives by law time.
@@ -135,14 +139,15 @@ enum class Fit : std::uint8_t {
 
 /// Whether a change that begins at a law time keeps all limits to its end. Looks at a place each one or two
 /// milliseconds, and at both sides of each knot that is passed. May go on in a later cycle where it was left.
-class Verification {
+/// Change: RateChange, or what else gives a rate over time from r0 to r1 in `seconds`.
+template <class Change>
+class VerificationOf {
  public:
   /// `beyond`: so much longer the rate at its end must hold before the last known stop.
-  void begin(const RateChange& change, const LawTime& from, std::int64_t near_knot,
-             double beyond = 0.0) noexcept;
+  void begin(const Change& change, const LawTime& from, std::int64_t near_knot, double beyond = 0.0) noexcept;
   /// Counts the places down that it looks at, and stops at 0.
   Fit go(const CourseView& view, const RateLimits& limits, int& places) noexcept;
-  const RateChange& change() const noexcept { return change_; }
+  const Change& change() const noexcept { return change_; }
   const LawTime& from() const noexcept { return from_; }
   /// Share of the change that it has come through.
   double reached() const noexcept { return t_ / change_.seconds; }
@@ -152,12 +157,13 @@ class Verification {
  private:
   bool keeps_at_knots(const CourseView& view, std::int64_t to, const RateLimits& limits,
                       int& places) noexcept;
-  RateChange change_;
+  Change change_;
   LawTime from_;
   std::int64_t before_ = 1;  // knot of the last place
   Interval interval_;
   double t_ = 0.0, last_ = 0.0, beyond_ = 0.0;
 };
+using Verification = VerificationOf<RateChange>;
 
 /// Looks at every eighth of the places of a Verification, and counts them down: false where one of them
 /// breaks a limit, which most changes that are too short do. real-time safe.

@@ -24,9 +24,9 @@ void RateMotion::advance(const CourseView& view, double period) noexcept {
     time_ = time_.plus(rate_ * period);
     return;
   }
-  const double before = change_.at(into_).passed;
+  const double before = on_plan_ ? plan_.at(into_).passed : change_.at(into_).passed;
   into_ += period;
-  const RateState now = change_.at(into_);
+  const RateState now = on_plan_ ? plan_.at(into_) : change_.at(into_);
   time_ = time_.plus(now.passed - before);
   rate_ = now.rate;
   slope_ = now.slope;
@@ -40,9 +40,10 @@ void RateMotion::start(const RateChange& change) noexcept {
   change_ = change;
   into_ = 0.0;
   active_ = true;
-  on_ramp_ = false;
+  on_ramp_ = on_plan_ = false;
   ramp_at_ = -1;
   prepared_ = {};
+  sooner_.cycles = 0;
   stuck_ = creeping_ = levels_ = false;
   if (change.r1 != 0.0) starving_ = false;
 }
@@ -191,8 +192,10 @@ bool RateMotion::step(const CourseView& view, double target, double period) noex
   left_ = kMostPlaces;
   forget_ramps(target);
   begin_prepared(target);
-  seek(view, target, period);
-  if (target == 0.0) shorten_stop(view, period);
+  if (target != 0.0) sooner_ = {};
+  begin_sooner_stop();
+  if (sooner_.cycles == 0 || sooner_.fits) seek(view, target, period);
+  if (target == 0.0) seek_sooner_stop(view, period);
   if (!come_back(view, period) && !stop_in_time(view, target, period)) advance(view, period);
   const bool there = rests_there(view);
   CoursePlace place(view);

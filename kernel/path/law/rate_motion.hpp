@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "kernel/path/law/path_ramp.hpp"
+#include "kernel/path/law/stop_search.hpp"
 
 namespace servogate::path {
 
@@ -63,8 +64,11 @@ class RateMotion {
   void prepare(const CourseView& view, double target, double seconds, int power, double period) noexcept;
   bool preparing(const CourseView& view) noexcept;
   void begin_prepared(double target) noexcept;
-  double way_to_rest(const CourseView& view) const noexcept;
-  void shorten_stop(const CourseView& view, double period) noexcept;
+  bool is_at(const LawTime& time, double rate, double slope) const noexcept;
+  double seconds_to_rest(const CourseView& view) const noexcept;
+  double begins_in(const CourseView& view) const noexcept;
+  void begin_sooner_stop() noexcept;
+  void seek_sooner_stop(const CourseView& view, double period) noexcept;
   bool near_last_stop(const CourseView& view) const noexcept;
   void creep(const CourseView& view, double target) noexcept;
   bool rests_there(const CourseView& view) noexcept;
@@ -92,10 +96,8 @@ class RateMotion {
   };
   Ahead ahead_;        ///< the search for a knot where it may begin
   double into_ = 0.0;  ///< the ramp, or the change, s
-  bool active_ = false, on_ramp_ = false, starving_ = false, settled_ = false, stuck_ = false;
-  /// Of the stops that are tried instead of the one on its way: the next one, cycles until it is tried, and
-  /// rounds in vain.
-  int shorter_next_ = 0, shorter_pause_ = 0, shorter_rounds_ = 0;
+  bool active_ = false, on_ramp_ = false, on_plan_ = false;
+  bool starving_ = false, settled_ = false, stuck_ = false;
   double searched_for_ = 2.0;  ///< target of the search
   double next_ = 0.0;          ///< length to try next
   double share_ = 1.0;         ///< of the target, where not enough is published for all of it
@@ -108,8 +110,16 @@ class RateMotion {
   };
   static constexpr int kAtRest = 1 << 30;  ///< cycles: it begins as soon as it is verified
   Prepared prepared_;
-  int needed_ = 0;         ///< places of the change that was tried last, if they were not enough
-  bool shorter_ = false;   ///< stops that are shorter than the known one were tried last
+  int needed_ = 0;  ///< places of the change that was tried last, if they were not enough
+  /// A stop that rests sooner than the one on its way, or settled, is looked for.
+  struct Sooner {
+    int cycles = 0;  ///< until it begins; 0: none is looked for
+    bool fits = false;
+    int pause = 0, in_vain = 0;  ///< cycles until the next search, and searches in vain
+  };
+  Sooner sooner_;
+  StopSearch stop_search_;
+  StopPlan plan_;          ///< what on_plan_ follows
   bool levels_ = false;    ///< the change in progress leads to a constant rate, from which the search goes on
   bool creeping_ = false;  ///< next_ is the length of a way from rest to rest
   RateChange back_;        ///< from above 1

@@ -2,7 +2,6 @@
 // How a change of the rate is found, cycle by cycle, that has been verified to its end.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -14,9 +13,6 @@ namespace {
 constexpr double kLeastShare = 0.03, kOfStop = 0.6;
 constexpr double kShortest = RateChange::kShortest;
 constexpr double kFarStop = 0.1;  // s; those between knots of a curve are nearer
-
-/// Law time that passes in a stop from a constant rate of 1, as a share of its seconds.
-double share_passed(int power) noexcept { return RateChange{1.0, 0.0, 0.0, 1.0, power}.at(1.0).passed; }
 
 }  // namespace
 
@@ -49,8 +45,9 @@ bool RateMotion::foresee(const CourseView& view, double in, PathRamp::From& at) 
     if (into_ + in >= ramp.seconds() || !ramp.go(view, limits_, into_ + in)) return false;
     at = {ramp.time(), ramp.knot(), ramp.state().rate, ramp.state().slope};
   } else {
-    const RateState then = change_.at(into_ + in);
-    at = {time_.plus(then.passed - change_.at(into_).passed), knot_, then.rate, then.slope};
+    const RateState now = on_plan_ ? plan_.at(into_) : change_.at(into_);
+    const RateState then = on_plan_ ? plan_.at(into_ + in) : change_.at(into_ + in);
+    at = {time_.plus(then.passed - now.passed), knot_, then.rate, then.slope};
   }
   CoursePlace place(view);
   place.set_knot(at.knot);
@@ -89,25 +86,25 @@ bool RateMotion::preparing(const CourseView& view) noexcept {
   return fit == Fit::fits;
 }
 
+bool RateMotion::is_at(const LawTime& time, double rate, double slope) const noexcept {
+  constexpr double kSame = 1e-9;
+  return std::abs(rate_ - rate) < kSame && std::abs(slope_ - slope) < kSame &&
+         std::abs(time_.since(time)) < kSame;
+}
+
 /// Where the motion has come to where it was foreseen.
 void RateMotion::begin_prepared(double target) noexcept {
-  constexpr double kSame = 1e-9;
   if (target != searched_for_) prepared_ = {};
   if (prepared_.cycles == 0 || --prepared_.cycles > 0) return;
   const Verification& made = prepared_.verification;
   const RateChange change = made.change();
-  const bool there = std::abs(rate_ - change.r0) < kSame && std::abs(slope_ - change.slope0) < kSame &&
-                     std::abs(time_.since(made.from())) < kSame;
-  if (std::exchange(prepared_.fits, false) && there) start(change);
+  if (std::exchange(prepared_.fits, false) && is_at(made.from(), change.r0, change.slope0)) start(change);
 }
 
-/// A stop like the known one, which begins a little before it, and longer ones; from a lower rate shorter
-/// ones in each other cycle, as there is more room.
+/// A stop like the known one, which begins a little before it, and longer ones.
 bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double period) noexcept {
-  constexpr double kLongerBy[] = {1.0, 1.18, 1.4}, kLower = 0.9;
-  shorter_ = !shorter_ && rate_ < kLower;
-  const double seconds = shorter_ ? std::max(kShortest, hint.seconds * std::sqrt(rate_))
-                                  : hint.seconds / rate_ + std::max(0.0, until(view, hint));
+  constexpr double kLongerBy[] = {1.0, 1.18, 1.4};
+  const double seconds = hint.seconds / rate_ + std::max(0.0, until(view, hint));
   for (const double longer : kLongerBy) {
     if (left_ <= 0) return false;
     if (enter(view, 0.0, seconds * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) == Fit::fits)
@@ -143,8 +140,7 @@ void RateMotion::search(const CourseView& view, double target, double period) no
   if (searched_for_ != target) {
     searched_for_ = target;
     anew();
-    shorter_ = ramp_tried_ = false;
-    shorter_next_ = shorter_pause_ = shorter_rounds_ = 0;
+    ramp_tried_ = false;
     share_ = 1.0;
     if (early(view, target, hint, period)) return;
   } else if (preparing(view) || left_ <= 0 || early(view, target, hint, period)) {
@@ -172,45 +168,59 @@ void RateMotion::search(const CourseView& view, double target, double period) no
   }
 }
 
-/// Law time until the motion rests by the stop that is on its way or settled; 0: there is none.
-double RateMotion::way_to_rest(const CourseView& view) const noexcept {
-  if (active_ && wanted() != 0.0) return 0.0;
-  if (active_ && !on_ramp_) return std::abs(change_.at(change_.seconds).passed - change_.at(into_).passed);
-  if (active_ || ramp_at_ >= 0) return std::abs(ramp_rests_.since(time_));
-  if (!settled_) return 0.0;
-  const StopHint hint = view.stop_near(knot_);
-  const double in = until(view, hint);
-  return in > 0.0 ? in * rate_ + share_passed(hint.power) * hint.seconds : 0.0;
+/// Until the motion rests by the stop that is on its way or settled.
+double RateMotion::seconds_to_rest(const CourseView& view) const noexcept {
+  constexpr double kNotKnown = 2.0;
+  if (active_) return wanted() == 0.0 ? change_.seconds - into_ : kNotKnown;
+  const double in = begins_in(view);
+  if (in < 0.0) return kNotKnown;
+  return in + (ramp_at_ >= 0 ? ramp_.seconds() : view.stop_near(knot_).seconds / rate_);
 }
 
-/// What was known, or found first, need not be the shortest stop: others are tried while it is on its way.
-void RateMotion::shorten_stop(const CourseView& view, double period) noexcept {
-  constexpr double kShares[] = {0.2, 0.25, 0.3, 0.36, 0.42, 0.5, 0.58, 0.66, 0.74, 0.82, 0.9, 0.96};
-  constexpr int kTries = 2 * static_cast<int>(std::size(kShares)), kLongestPause = 16;
-  if (shorter_pause_ > 0) {
-    --shorter_pause_;
+/// Seconds until the stop begins that is settled; below 0: there is none.
+double RateMotion::begins_in(const CourseView& view) const noexcept {
+  if (active_ || !(rate_ > 0.0)) return -1.0;
+  if (ramp_at_ < 0) return until(view, view.stop_near(knot_));
+  const Knot* knot = view.knot(ramp_at_);
+  return knot == nullptr ? -1.0 : std::max(0.0, knot->t.since(time_) / rate_);
+}
+
+/// Where the motion has come to where it was foreseen.
+void RateMotion::begin_sooner_stop() noexcept {
+  if (sooner_.cycles == 0 || --sooner_.cycles > 0) return;
+  const StopPlan& plan = stop_search_.plan();
+  if (!std::exchange(sooner_.fits, false) || !is_at(stop_search_.from().time, plan.r0, plan.slope0)) return;
+  start({rate_, slope_, 0.0, plan.seconds, 3});
+  plan_ = plan;
+  on_plan_ = true;
+}
+
+/// What was known, or found first, need not be the soonest stop: others are looked for while it is on its
+/// way.
+void RateMotion::seek_sooner_stop(const CourseView& view, double period) noexcept {
+  constexpr int kAhead = 6, kFirstPause = 16, kLongestPause = 128, kToVerify = 2, kLeast = 500;
+  constexpr double kGain = 0.002;
+  if (sooner_.pause > 0) {
+    --sooner_.pause;
     return;
   }
-  if (left_ <= 0 || rate_ == 0.0 || std::abs(rate_) > 1.0 || preparing(view)) return;
-  const double way = way_to_rest(view);
-  if (way == 0.0) return;
-  for (; shorter_next_ < kTries; ++shorter_next_) {
-    const int power = shorter_next_ % 2 == 0 ? 3 : 2;
-    const double share = kShares[shorter_next_ / 2];
-    const double seconds = share * way / (share_passed(power) * std::abs(rate_));
-    if (seconds < kShortest) continue;
-    const Fit fit = enter(view, 0.0, seconds, power, period);
-    if (fit == Fit::fits) {
-      shorter_rounds_ = 0;
-      return;
-    }
-    if (fit != Fit::open) continue;
-    prepare(view, 0.0, seconds, power, period);
-    ++shorter_next_;
-    return;
+  if (rate_ == 0.0 || std::abs(rate_) > 1.0 || sooner_.fits) return;
+  if (sooner_.cycles == 0) {
+    if (left_ < kLeast || prepared_.cycles > 0) return;
+    const double in = kAhead * period, settled_in = begins_in(view);
+    const double within = seconds_to_rest(view) - in - kGain;
+    PathRamp::From at;
+    if (within < kShortest || (settled_in >= 0.0 && settled_in <= in) || !foresee(view, in, at)) return;
+    stop_search_.begin({at.time, at.knot, at.rate, at.slope}, within);
+    sooner_.cycles = kAhead;
   }
-  shorter_next_ = 0;
-  shorter_pause_ = std::min(kLongestPause, 1 << std::min(++shorter_rounds_, 8));
+  left_ -= StopSearch::kPast;
+  const Fit fit = stop_search_.go(view, limits_, sooner_.cycles < kToVerify, left_);
+  left_ += StopSearch::kPast;
+  sooner_.fits = fit == Fit::fits && !beyond_rest(view, stop_search_.rests_at());
+  if (sooner_.fits || (fit == Fit::open && sooner_.cycles > 1)) return;
+  sooner_.cycles = 0;
+  sooner_.pause = std::min(kLongestPause, kFirstPause << std::min(sooner_.in_vain++, 4));
 }
 
 }  // namespace servogate::path
