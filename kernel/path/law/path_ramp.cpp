@@ -209,7 +209,7 @@ bool PathRamp::look_at_axes(const RateLimits& limits, const CoursePoint& law) no
   return true;
 }
 
-bool PathRamp::begin(const CourseView& view, const RateLimits& limits, const From& from, double target,
+bool PathRamp::begin(const CourseView& view, const RateLimits& limits, const CourseState& from, double target,
                      int& places) noexcept {
   from_ = from;
   forwards_ = from.rate < 0.0 || (from.rate == 0.0 && target < 0.0) ? -1.0 : 1.0;

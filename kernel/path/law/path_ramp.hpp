@@ -12,16 +12,10 @@ class PathRamp {
  public:
   static constexpr double kAbove = 6e-3;
   static constexpr std::size_t kPlans = 7;  ///< the fastest ones first
-  /// The state of a motion on the course.
-  struct From {
-    LawTime time;
-    std::int64_t knot = 1;
-    double rate = 1.0, slope = 0.0;
-  };
   /// Looks at the path from here on, once for all plans of the way to `target` times the law's speed, or to
   /// rest where that is the other way round. Counts `places` down by the knots that it looks at. False: the
   /// law rests, or the bend of the path takes nearly all of an axis.
-  bool begin(const CourseView& view, const RateLimits& limits, const From& from, double target,
+  bool begin(const CourseView& view, const RateLimits& limits, const CourseState& from, double target,
              int& places) noexcept;
   /// One of kPlans. False: the motion would turn round, too little is published, or more knots would be
   /// passed than `places`, which it counts down.
@@ -69,7 +63,7 @@ class PathRamp {
   MotionState motion(double t) const noexcept;
   double next_place(double t, double step) const noexcept;
 
-  From from_;
+  CourseState from_;
   Here here_;
   MotionState now_;                 ///< there, in the direction of the motion
   double wanted_ = 0.0, v1_ = 0.0;  ///< rate at the end, >= 0, and about the speed there

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "kernel/path/axes/transformation.hpp"
-#include "kernel/path/law/stop_search.hpp"
+#include "kernel/path/law/stop_plan.hpp"
 
 namespace servogate::path {
 namespace {

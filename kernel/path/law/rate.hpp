@@ -75,6 +75,13 @@ class CoursePlace {
   std::int64_t m_ = 1;
 };
 
+/// The state of a motion on a course.
+struct CourseState {
+  LawTime time;
+  std::int64_t knot = 1;  ///< ends the interval where it is
+  double rate = 1.0, slope = 0.0;
+};
+
 /// What the set-points may not exceed while the rate changes.
 struct RateLimits {
   int axes = 0;

@@ -57,10 +57,9 @@ class RateMotion {
   bool stop_at(const CourseView& view, const StopHint& hint, double period) noexcept;
   double until(const CourseView& view, const StopHint& hint) const noexcept;
   bool stop_in_time(const CourseView& view, double target, double period) noexcept;
-  bool try_known(const CourseView& view, const StopHint& hint, double period) noexcept;
   bool level_off(const CourseView& view, double period) noexcept;
   void search(const CourseView& view, double target, double period) noexcept;
-  bool foresee(const CourseView& view, double in, PathRamp::From& at) const noexcept;
+  bool foresee(const CourseView& view, double in, CourseState& at) const noexcept;
   void prepare(const CourseView& view, double target, double seconds, int power, double period) noexcept;
   bool preparing(const CourseView& view) noexcept;
   void begin_prepared(double target) noexcept;

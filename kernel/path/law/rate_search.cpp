@@ -37,7 +37,7 @@ Fit RateMotion::enter(const CourseView& view, double target, double seconds, int
 }
 
 /// Where the motion will be in so many seconds, if nothing else is entered.
-bool RateMotion::foresee(const CourseView& view, double in, PathRamp::From& at) const noexcept {
+bool RateMotion::foresee(const CourseView& view, double in, CourseState& at) const noexcept {
   if (!active_) {
     at = {time_.plus(rate_ * in), knot_, rate_, 0.0};
   } else if (on_ramp_) {
@@ -68,7 +68,7 @@ void RateMotion::prepare(const CourseView& view, double target, double seconds, 
     return;
   }
   const int cycles = needed_ / kMostPlaces + 2;
-  PathRamp::From at;
+  CourseState at;
   if (cycles > kMostCycles || !foresee(view, cycles * period, at)) return;
   prepared_.cycles = cycles;
   prepared_.verification.begin({at.rate, at.slope, target, seconds, power}, at.time, at.knot, period);
@@ -101,18 +101,6 @@ void RateMotion::begin_prepared(double target) noexcept {
   if (std::exchange(prepared_.fits, false) && is_at(made.from(), change.r0, change.slope0)) start(change);
 }
 
-/// A stop like the known one, which begins a little before it, and longer ones.
-bool RateMotion::try_known(const CourseView& view, const StopHint& hint, double period) noexcept {
-  constexpr double kLongerBy[] = {1.0, 1.18, 1.4};
-  const double seconds = hint.seconds / rate_ + std::max(0.0, until(view, hint));
-  for (const double longer : kLongerBy) {
-    if (left_ <= 0) return false;
-    if (enter(view, 0.0, seconds * longer, longer == 1.4 ? 5 - hint.power : hint.power, period) == Fit::fits)
-      return true;
-  }
-  return false;
-}
-
 /// Instead of speeding up any further, a constant rate soon: from there what is wanted is found.
 bool RateMotion::level_off(const CourseView& view, double period) noexcept {
   constexpr double kLengths[] = {0.04, 0.06, 0.1}, kMore = 0.3;
@@ -125,7 +113,7 @@ bool RateMotion::level_off(const CourseView& view, double period) noexcept {
   return false;
 }
 
-/// First the known stop and longer ones; then, cycle by cycle, all lengths from the shortest on.
+/// At once as fast as the axes can; else, cycle by cycle, all lengths from the shortest on.
 void RateMotion::search(const CourseView& view, double target, double period) noexcept {
   StopHint hint = view.stop_near(knot_);
   // Far away, at the end of a straight, it says nothing of here.
@@ -149,7 +137,6 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     return;
   }
   share_ = 1.0;
-  if (target == 0.0 && !active_ && hint.knot >= 0 && rate_ > 0.0 && try_known(view, hint, period)) return;
   while (left_ > 0) {
     const Fit fit = enter(view, share_ * target, next_, power_, period);
     if (fit == Fit::fits) return;
@@ -209,9 +196,9 @@ void RateMotion::seek_sooner_stop(const CourseView& view, double period) noexcep
     if (left_ < kLeast || prepared_.cycles > 0) return;
     const double in = kAhead * period, settled_in = begins_in(view);
     const double within = seconds_to_rest(view) - in - kGain;
-    PathRamp::From at;
+    CourseState at;
     if (within < kShortest || (settled_in >= 0.0 && settled_in <= in) || !foresee(view, in, at)) return;
-    stop_search_.begin({at.time, at.knot, at.rate, at.slope}, within);
+    stop_search_.begin(at, within);
     sooner_.cycles = kAhead;
   }
   left_ -= StopSearch::kPast;

@@ -11,54 +11,17 @@ namespace {
 
 constexpr double kShare = 0.993;        // of the limits: what may lie between two places
 constexpr double kInside = 1.0 - 1e-9;  // of an interval: the place is surely in it
-constexpr double kFull = 1.0;           // the rate may not exceed it
 constexpr double kNearly = 1e-3;
 
 }  // namespace
 
-RateState StopPlan::at(double t) const noexcept {
-  if (t >= seconds) {
-    const RateState& end = at_[count_ + 1];
-    return {0.0, 0.0, end.bend, end.passed};
-  }
-  const std::size_t n = std::min(count_, static_cast<std::size_t>(t / piece_));
-  const RateState& from = at_[n];
-  const double in = t - static_cast<double>(n) * piece_;
-  const double bent = from.bend * in;
-  return {from.rate + in * (from.slope + 0.5 * bent), from.slope + bent, from.bend,
-          from.passed + in * (from.rate + in * (0.5 * from.slope + bent / 6.0))};
-}
-
-void StopPlan::begin(double rate, double slope, double piece) noexcept {
-  r0 = rate;
-  slope0 = slope;
-  piece_ = piece;
-  count_ = 0;
-  seconds = 0.0;
-  at_[0] = {rate, slope, 0.0, 0.0};
-}
-
-void StopPlan::add(double bend) noexcept {
-  at_[count_].bend = bend;
-  seconds = static_cast<double>(count_ + 1) * piece_;
-  const RateState& from = at_[count_];
-  const double in = piece_, bent = bend * in;
-  at_[count_ + 1] = {from.rate + in * (from.slope + 0.5 * bent), from.slope + bent, 0.0,
-                     from.passed + in * (from.rate + in * (0.5 * from.slope + bent / 6.0))};
-  ++count_;
-}
-
-void StopPlan::close() noexcept {
-  RateState& from = at_[count_];
-  from.bend = 0.5 * from.slope * from.slope / from.rate;
-  const double in = -2.0 * from.rate / from.slope;
-  at_[count_ + 1] = {0.0, 0.0, from.bend, from.passed + in * from.rate / 3.0};
-  seconds = static_cast<double>(count_) * piece_ + in;
+bool StopSearch::Spot::inside(const LawTime& at) noexcept {
+  in = at.since(interval.begin());
+  return in > 0.0 && in < kInside * interval.seconds();
 }
 
 bool StopSearch::Spot::go(const CourseView& view, const RateLimits& limits, const LawTime& at) noexcept {
-  in = at.since(interval.begin());
-  if (interval.knot() != 0 && in > 0.0 && in < kInside * interval.seconds()) return true;
+  if (interval.knot() != 0 && inside(at)) return true;
   if (!place.go(at)) return false;
   if (interval.knot() != place.knot() && !interval.take(view, place.knot(), limits)) return false;
   in = std::clamp(at.since(interval.begin()), 0.0, interval.seconds());
@@ -67,11 +30,13 @@ bool StopSearch::Spot::go(const CourseView& view, const RateLimits& limits, cons
 
 LawTime StopSearch::time_at(double passed) const noexcept { return from_.time.plus(sense_ * passed); }
 
-void StopSearch::begin(const From& from, double within) noexcept {
+void StopSearch::begin(const CourseState& from, double within) noexcept {
   constexpr double kLeastPiece = 0.002;
   from_ = from;
   sense_ = from.rate < 0.0 ? -1.0 : 1.0;
+  full_ = std::max(1.0, std::abs(from.rate));
   best_ = within;
+  here_ = {};
   piece_ = std::max(kLeastPiece, within / (StopPlan::kMostPieces - 16));
   now_[0] = {};
   now_[0].rate = std::abs(from.rate);
@@ -97,28 +62,22 @@ bool StopSearch::bends(const Spot& spot, double in, const RateLimits& limits, do
 /// between.
 bool StopSearch::pass(const CourseView& view, const RateLimits& limits, Spot& spot, const Node& from,
                       const Node& to, Range& range, int& places) const noexcept {
-  const std::int64_t before = spot.interval.knot();
   const LawTime at = time_at(to.passed);
-  spot.in = at.since(spot.interval.begin());
-  if (before != 0 && spot.in > 0.0 && spot.in < kInside * spot.interval.seconds()) return true;
+  if (spot.inside(at)) return true;
   if (!spot.place.go(at)) return false;
-  while (before != 0 && spot.interval.knot() != spot.place.knot()) {
+  const bool on = sense_ > 0.0;
+  while (spot.interval.knot() != spot.place.knot()) {
     const std::int64_t begin = begin_of(view, spot.interval.knot());
-    const Knot* knot = view.knot(sense_ > 0.0 ? spot.interval.knot() : begin);
-    if (knot == nullptr) return false;
-    const double there = sense_ * knot->t.since(from_.time);
-    const double share =
-        std::clamp((there - from.passed) / std::max(1e-12, to.passed - from.passed), 0.0, 1.0);
+    const Knot* knot = view.knot(on ? spot.interval.knot() : begin);
+    if (knot == nullptr || places < -kPast / 2) return false;
+    const double there = sense_ * knot->t.since(from_.time), whole = to.passed - from.passed;
+    const double share = whole > 0.0 ? std::clamp((there - from.passed) / whole, 0.0, 1.0) : 1.0;
     const double rate = from.rate + share * (to.rate - from.rate);
     const double slope = from.slope + share * (to.slope - from.slope);
-    if (!bends(spot, sense_ > 0.0 ? spot.interval.seconds() : 0.0, limits, rate, slope, range, places))
-      return false;
-    if (!spot.interval.take(view, sense_ > 0.0 ? next_of(view, spot.interval.knot()) : begin, limits))
-      return false;
-    if (!bends(spot, sense_ > 0.0 ? 0.0 : spot.interval.seconds(), limits, rate, slope, range, places))
-      return false;
+    if (!bends(spot, on ? spot.interval.seconds() : 0.0, limits, rate, slope, range, places)) return false;
+    if (!spot.interval.take(view, on ? next_of(view, spot.interval.knot()) : begin, limits)) return false;
+    if (!bends(spot, on ? 0.0 : spot.interval.seconds(), limits, rate, slope, range, places)) return false;
   }
-  if (before == 0 && !spot.interval.take(view, spot.place.knot(), limits)) return false;
   spot.in = std::clamp(at.since(spot.interval.begin()), 0.0, spot.interval.seconds());
   return true;
 }
@@ -140,7 +99,7 @@ bool StopSearch::follow(const CourseView& view, const RateLimits& limits, Spot& 
   const double most = 1.0 / (piece_ * piece_ * kPieces * kPieces);
   for (double& bend : node.bends) {
     const Node from = node;
-    const Spot start = spot;
+    const std::int64_t knot = spot.interval.knot();
     Range fits = from.range;
     fits.least = std::max(fits.least, -most);
     fits.largest = std::min(fits.largest, most);
@@ -148,7 +107,7 @@ bool StopSearch::follow(const CourseView& view, const RateLimits& limits, Spot& 
     bend = std::clamp(bend, fits.least, fits.largest);
     for (int n = 0;; ++n) {
       node.go(bend, piece_);
-      if (n == kTries || !(node.rate > 0.0 && node.rate <= kFull)) return false;
+      if (n == kTries || !(node.rate > 0.0 && node.rate <= full_)) return false;
       Range way;
       node.range = {};
       if (!pass(view, limits, spot, from, node, way, places) ||
@@ -161,7 +120,8 @@ bool StopSearch::follow(const CourseView& view, const RateLimits& limits, Spot& 
       const double least_all = std::max(least, fits.least), largest_all = std::min(largest, fits.largest);
       if (least_all > largest_all) return false;
       node.passed = from.passed, node.rate = from.rate, node.slope = from.slope;
-      spot = start;
+      spot.place.set_knot(knot);
+      if (spot.interval.knot() != knot && !spot.interval.take(view, knot, limits)) return false;
       bend = std::clamp(bend, least_all, largest_all);
     }
   }
@@ -193,7 +153,9 @@ bool StopSearch::closes(const CourseView& view, const RateLimits& limits, const 
 void StopSearch::expand(const CourseView& view, const RateLimits& limits, int& places) noexcept {
   Node node = now_[node_];
   Spot spot(view, node.knot);
+  spot.interval = here_;
   if (!spot.go(view, limits, time_at(node.passed))) return;
+  here_ = spot.interval;
   if (step_ == 0 && !bends(spot, spot.in, limits, node.rate, node.slope, node.range, places)) return;
   const double before = static_cast<double>((step_ + 1) * kPieces) * piece_;
   node.parent = static_cast<std::uint8_t>(node_);

@@ -2,32 +2,9 @@
 #pragma once
 #include <limits>
 
-#include "kernel/path/law/rate.hpp"
+#include "kernel/path/law/stop_plan.hpp"
 
 namespace servogate::path {
-
-/// A stop by a rate whose second derivative, the bend, is constant from piece to piece: equal pieces, and a
-/// last one in which rate and slope come to 0 together. Everything here is real-time safe.
-class StopPlan {
- public:
-  static constexpr std::size_t kMostPieces = 256;  ///< and the last one
-  double r0 = 1.0, slope0 = 0.0, seconds = 0.0;
-  static constexpr double r1 = 0.0;
-  /// `t` seconds from its start, >= 0; behind `seconds` it rests.
-  RateState at(double t) const noexcept;
-
-  /// No pieces yet: it begins with this rate and slope, and its pieces take `piece` seconds, > 0.
-  void begin(double rate, double slope, double piece) noexcept;
-  /// A piece with this second derivative; at most kMostPieces.
-  void add(double bend) noexcept;
-  /// The last piece, from a rate that falls in size.
-  void close() noexcept;
-
- private:
-  std::array<RateState, kMostPieces + 2> at_{};  // where the pieces begin, each with the bend of its piece
-  std::size_t count_ = 0;
-  double piece_ = 0.002;
-};
 
 /// Looks for the soonest stop from a state of a course: piece by piece, from the most promising rates on,
 /// with some bends between the least and the largest one that all axes leave there (a beam search). What it
@@ -35,19 +12,13 @@ class StopPlan {
 /// depends on the course and the state alone, and on how often `conclude` was true.
 class StopSearch {
  public:
-  /// Where the motion will be, and how it will go there.
-  struct From {
-    LawTime time;
-    std::int64_t knot = 1;
-    double rate = 1.0, slope = 0.0;
-  };
-  /// `within`: s, only sooner stops count.
-  void begin(const From& from, double within) noexcept;
+  /// `from`: where the motion will be; `within`: s, only sooner stops count.
+  void begin(const CourseState& from, double within) noexcept;
   /// Counts the places down that it looks at, and stops at 0 or up to kPast below. `conclude`: time is up,
   /// the best stop so far will do. fits: plan() is verified; breaks: there is none; open: to be gone on with.
   Fit go(const CourseView& view, const RateLimits& limits, bool conclude, int& places) noexcept;
   static constexpr int kPast = 100;
-  const From& from() const noexcept { return from_; }
+  const CourseState& from() const noexcept { return from_; }
   const StopPlan& plan() const noexcept { return verification_.change(); }
   /// Where the plan comes to rest.
   LawTime rests_at() const noexcept { return from_.time.plus(plan().at(plan().seconds).passed); }
@@ -79,6 +50,7 @@ class StopSearch {
   struct Spot {
     explicit Spot(const CourseView& view, std::int64_t knot) noexcept : place(view) { place.set_knot(knot); }
     bool go(const CourseView& view, const RateLimits& limits, const LawTime& at) noexcept;
+    bool inside(const LawTime& at) noexcept;
     CoursePlace place;
     Interval interval;
     double in = 0.0;
@@ -97,9 +69,11 @@ class StopSearch {
   bool next_step() noexcept;
   void make_plan() noexcept;
 
-  From from_;
+  CourseState from_;
   double sense_ = 1.0;  // -1: backwards
+  double full_ = 1.0;   // the rate does not exceed it
   double piece_ = 0.002, best_ = 0.0;
+  Interval here_;  // where the states are that are followed
   std::size_t step_ = 0, node_ = 0, option_ = 0;
   std::size_t last_step_ = 0;  // of the best stop so far
   Node last_;                  // its state where the last piece begins
