@@ -103,6 +103,7 @@ bool StopSearch::follow(const CourseView& view, const RateLimits& limits, Spot& 
     Range fits = from.range;
     fits.least = std::max(fits.least, -most);
     fits.largest = std::min(fits.largest, most);
+    if (fits.least > fits.largest) return false;
     bend = number < std::size(kShares) ? fits.least + kShares[number] * (fits.largest - fits.least) : 0.0;
     bend = std::clamp(bend, fits.least, fits.largest);
     for (int n = 0;; ++n) {
@@ -134,7 +135,7 @@ bool StopSearch::follow(const CourseView& view, const RateLimits& limits, Spot& 
 /// One bend from here on comes to rest, and sooner than the best one.
 bool StopSearch::closes(const CourseView& view, const RateLimits& limits, const Spot& spot, const Node& node,
                         double before, int& places) const noexcept {
-  constexpr double kLooks = 64.0;
+  constexpr double kLooks = 48.0;
   if (!(node.slope < 0.0)) return false;
   const double bend = 0.5 * node.slope * node.slope / node.rate, seconds = -2.0 * node.rate / node.slope;
   if (before + seconds >= best_ || bend > node.range.largest || bend < node.range.least) return false;

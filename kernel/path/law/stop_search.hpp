@@ -17,7 +17,7 @@ class StopSearch {
   /// Counts the places down that it looks at, and stops at 0 or up to kPast below. `conclude`: time is up,
   /// the best stop so far will do. fits: plan() is verified; breaks: there is none; open: to be gone on with.
   Fit go(const CourseView& view, const RateLimits& limits, bool conclude, int& places) noexcept;
-  static constexpr int kPast = 100;
+  static constexpr int kPast = 128;
   const CourseState& from() const noexcept { return from_; }
   const StopPlan& plan() const noexcept { return verification_.change(); }
   /// Where the plan comes to rest.
