@@ -35,16 +35,20 @@ const canopen::ServoCommand& SimulatedDrive::Inside::by_own_gains(
   if (!closed) {
     tuning.integral = 0.0;
     tuning.notch.reset();
+    return asked;
   }
-  if (!closed || !tuning.there) return asked;
-  const Tuning::Values tuned = tuning.values(dictionary);
-  if (tuned == tuning.own) return asked;
+  if (!tuned_known) {
+    tuned_known = true;
+    tuned = tuning.there && tuning.values(dictionary) != tuning.own;
+  }
+  if (!tuned) return asked;
+  const Tuning::Values values = tuning.values(dictionary);
   const double step = static_cast<double>(config.servo_period_ns) * 1e-9;
-  const double gain = static_cast<double>(tuned[0]) * 1e-6;
-  const ServoGains gains{static_cast<double>(tuned[2]) * 1e-3, gain,
-                         gain * static_cast<double>(tuned[1]) * 1e-3 * step, total_inertia_of(config.plant),
+  const double gain = static_cast<double>(values[0]) * 1e-6;
+  const ServoGains gains{static_cast<double>(values[2]) * 1e-3, gain,
+                         gain * static_cast<double>(values[1]) * 1e-3 * step, total_inertia_of(config.plant),
                          2.0 * std::numbers::pi / static_cast<double>(config.plant.counts_per_rev)};
-  tuning.notch.set(static_cast<double>(tuned[3]) * 1e-3, static_cast<double>(tuned[4]) * 1e-3, step);
+  tuning.notch.set(static_cast<double>(values[3]) * 1e-3, static_cast<double>(values[4]) * 1e-3, step);
   const double permille = config.plant.rated_torque_nm / 1000.0, peak = config.plant.peak_torque_nm;
   const double high = std::min(asked.torque_limit_positive * permille, peak);
   const double low = -std::min(asked.torque_limit_negative * permille, peak);
@@ -82,7 +86,53 @@ void SimulatedDrive::Inside::show_product(std::int64_t code) noexcept {
   dictionary.set_default(canopen::object::kIdentity, 2, code);
 }
 
+inline void SimulatedDrive::Inside::servo_tick() noexcept {
+  using Loop = canopen::ServoCommand::Loop;
+  const std::int64_t before = plant.counts();
+  const bool own_loops =
+      tuned_known && !tuned && (command.loop == Loop::position || command.loop == Loop::velocity);
+  plant.step(own_loops ? command : by_own_gains(command));
+  if (any_lasting && spoiled(fault::Kind::kill)) return;  // the mechanics alone
+  if (config.plant.thermal_time_s > 0.0) watch_heat();
+  if (!config.switches.empty() || outside_level != inputs.active) read_inputs(before);
+  inputs.hold_state = any_lasting && spoiled(fault::Kind::stuck_state) &&
+                      profile.state() == fault(fault::Kind::stuck_state).state;
+  if (any_lasting && spoiled(fault::Kind::encoder_loss)) {
+    canopen::ServoState servo = plant.state();
+    servo.position = lost_encoder_position;
+    servo.zero_mark = false;
+    command = profile.tick(servo, inputs);
+  } else {
+    command = profile.tick(plant.state(), inputs);
+  }
+}
+
+void SimulatedDrive::Inside::moving_tick() noexcept {
+  const double torque = plant.state().torque;
+  rest.forget();
+  servo_tick();
+  calm = plant.velocity_rad_s() == 0.0 && plant.state().torque == torque;
+}
+
+// Many axes stand most of the time, and a tick that changes no bit need not be done again.
+void SimulatedDrive::Inside::calm_tick() noexcept {
+  profile.drop_target_that_is_met();
+  if (rest.before_tick()) return time_at_rest();
+  const double torque = plant.state().torque;
+  const std::optional<double> before = profile.time_in_window();
+  servo_tick();
+  calm = plant.state().torque == torque;
+  window_runs = profile.only_counts_window(before);
+  rest.after_tick(window_runs || profile.time_in_window() == before);
+}
+
+// A frame, an input or a fault may have come since the last call.
 void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
+  if (!due(t)) {
+    now = std::max(now, t);
+    return;
+  }
+  doubt();
   while (next_servo <= t || next_communication <= t) {
     if (any_lasting && spoiled(fault::Kind::freeze) && !spoiled(fault::Kind::kill)) {
       // Time passes it by.
@@ -92,7 +142,12 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
       next_communication += kCommunicationPeriod;
     } else if (next_servo <= next_communication) {
       if (late_count > 0) hear_late(next_servo);
-      servo_tick();
+      if (rest.sure())
+        time_at_rest();
+      else if (any_lasting || !calm || plant.velocity_rad_s() != 0.0)
+        moving_tick();
+      else
+        calm_tick();  // it is looked at as a whole
       next_servo += config.servo_period_ns;
     } else {
       if (any_lasting) expire(next_communication);
@@ -100,6 +155,7 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
         gate.advance_to(next_communication);
         slave.tick(next_communication);
       }
+      doubt();
       next_communication += kCommunicationPeriod;
     }
   }
@@ -108,6 +164,7 @@ void SimulatedDrive::Inside::advance_to(Nanoseconds t) noexcept {
 }
 
 void SimulatedDrive::Inside::hear_late(Nanoseconds t) noexcept {
+  doubt();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < late_count; ++i) {
     const CanFrame frame = late[i];
@@ -155,29 +212,18 @@ void SimulatedDrive::Inside::watch_heat() noexcept {
   }
 }
 
-void SimulatedDrive::Inside::servo_tick() noexcept {
-  const std::int64_t before = plant.counts();
-  plant.step(by_own_gains(command));
-  if (any_lasting && spoiled(fault::Kind::kill)) return;  // the mechanics alone
-  if (config.plant.thermal_time_s > 0.0) watch_heat();
-  read_inputs(before);
-  inputs.hold_state = any_lasting && spoiled(fault::Kind::stuck_state) &&
-                      profile.state() == fault(fault::Kind::stuck_state).state;
-  if (any_lasting && spoiled(fault::Kind::encoder_loss)) {
-    canopen::ServoState servo = plant.state();
-    servo.position = lost_encoder_position;
-    servo.zero_mark = false;
-    command = profile.tick(servo, inputs);
-  } else {
-    command = profile.tick(plant.state(), inputs);
-  }
+std::span<const std::int64_t> SimulatedDrive::Inside::drive_values() {
+  canopen::ObjectDictionary::Slot first = 0;
+  while (first < dictionary.size() && dictionary.spec(first).index < 0x6000) ++first;
+  if (first == dictionary.size()) return {};
+  const canopen::ObjectSpec& spec = dictionary.spec(first);
+  // The values stand in the order of their slots.
+  return {&dictionary.variable(spec.index, spec.subindex),
+          static_cast<std::size_t>(dictionary.size() - first)};
 }
 
 // Levels of the inputs; where the shaft itself moved a switch, the edge lies on the switch's boundary.
 void SimulatedDrive::Inside::read_inputs(std::int64_t before) noexcept {
-  bool same = config.switches.empty();
-  for (std::size_t i = 0; i < canopen::kDriveInputs; ++i) same = same && outside_level[i] == inputs.active[i];
-  if (same) return;
   const std::int64_t error = plant.state().position - plant.counts();
   auto level = outside_level;
   auto edge = inputs.edge_position;

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "drivers/mock/drive/bus_gate.hpp"
 #include "drivers/mock/drive/device_objects.hpp"
+#include "drivers/mock/drive/drive_rest.hpp"
 #include "drivers/mock/drive/servo_loops.hpp"
 #include "drivers/mock/drive/simulated_drive.hpp"
 #include "firmware_if/canopen/device/drive/servo_profile.hpp"
@@ -30,7 +32,24 @@ struct SimulatedDrive::Inside {
   void start_again() noexcept;
   void show_product(std::int64_t code) noexcept;
   void advance_to(Nanoseconds t) noexcept;
+  /// advance_to() has something to do.
+  bool due(Nanoseconds t) const noexcept {
+    return next_servo <= t || next_communication <= t || late_count > 0;
+  }
   void servo_tick() noexcept;
+  void moving_tick() noexcept;
+  void calm_tick() noexcept;
+  /// Instead of a tick.
+  void time_at_rest() noexcept {
+    if (window_runs) profile.count_window();
+  }
+  /// Of all objects from 6000h on.
+  std::span<const std::int64_t> drive_values();
+  /// Something may have come from outside.
+  void doubt() noexcept {
+    rest.doubt();
+    tuned_known = false;
+  }
   const canopen::ServoCommand& by_own_gains(const canopen::ServoCommand& asked) noexcept;
   void watch_heat() noexcept;
   void read_inputs(std::int64_t before) noexcept;
@@ -79,6 +98,7 @@ struct SimulatedDrive::Inside {
     canopen::ServoCommand command;  ///< of the tuned loops
   };
   Tuning tuning{dictionary, config.data_sheet != nullptr};
+  bool tuned = false, tuned_known = false;  ///< a master has tuned them; looked at since he could have
   canopen::DriveInputs inputs;
   std::array<bool, canopen::kDriveInputs> outside_level{};
   std::int64_t lost_encoder_position = 0;
@@ -88,7 +108,13 @@ struct SimulatedDrive::Inside {
   std::uint32_t rpdos_dropped_of = 0;  ///< RPDOs since the fault began
   std::array<CanFrame, 32> late{};     ///< RPDOs on their way, with the time at which they arrive
   std::size_t late_count = 0;
-  bool hot = false;  ///< I2t: too hot, until it has cooled down
+  /// Of all that servo_tick() goes by and changes while no fault lasts.
+  DriveRest rest{{DriveRest::part(plant), profile.inner_state(), DriveRest::part(command),
+                  DriveRest::part(inputs), DriveRest::part(outside_level), DriveRest::part(tuning),
+                  std::as_bytes(drive_values())}};
+  bool calm = false;         ///< the last tick left position and torque as they were
+  bool window_runs = false;  ///< the one thing that goes on at rest: ServoProfile::count_window()
+  bool hot = false;          ///< I2t: too hot, until it has cooled down
   Nanoseconds now = 0;
   Nanoseconds next_servo = 0;
   Nanoseconds next_communication = 0;

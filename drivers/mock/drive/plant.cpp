@@ -27,6 +27,22 @@ std::int64_t floor_to_int(double x) noexcept {
 
 }  // namespace
 
+inline void Plant::measure() noexcept {
+  whole_counts_ = floor_to_int(counts_);
+  state_.zero_mark = false;
+  if (whole_counts_ < mark_below_ || whole_counts_ >= mark_above_) {
+    state_.zero_mark = true;
+    state_.zero_mark_position = (whole_counts_ < mark_below_ ? mark_below_ : mark_above_) + encoder_error_;
+    find_marks();
+  }
+  state_.position = whole_counts_ + encoder_error_;
+  if (config_.encoder_noise_counts > 0.0)
+    state_.position += std::llround(2.0 * config_.encoder_noise_counts * even_noise());
+  state_.velocity = omega_ * counts_per_rad_;
+  const double off = config_.torque_noise_nm > 0.0 ? config_.torque_noise_nm * noise() : 0.0;
+  state_.torque = (torque_ + off) * nm_to_permille_;
+}
+
 Plant::Plant(const PlantConfig& config, image::Nanoseconds step_ns)
     : config_(config), h_(static_cast<double>(step_ns) * 1e-9), load_torque_(config.load_torque_nm) {
   if (config.counts_per_rev <= 0 || config.inertia_kg_m2 <= 0.0 || config.rated_torque_nm <= 0.0 ||
@@ -108,7 +124,7 @@ void Plant::step(const canopen::ServoCommand& command) noexcept {
     const double load = torque_ / config_.rated_torque_nm;
     thermal_ += thermal_step_ * (load * load - thermal_);
   }
-  ++steps_;
+  steps_ += dip_steps_ > 0;
   measure();
 }
 
@@ -221,22 +237,6 @@ inline double Plant::stopped_at_rigid_stops(double& counts, double omega) noexce
   if (!at_stop_) return omega;
   counts = std::clamp(counts, stop_min_counts_, stop_max_counts_);
   return (counts == stop_min_counts_) == (omega < 0.0) ? 0.0 : omega;
-}
-
-void Plant::measure() noexcept {
-  whole_counts_ = floor_to_int(counts_);
-  state_.zero_mark = false;
-  if (whole_counts_ < mark_below_ || whole_counts_ >= mark_above_) {
-    state_.zero_mark = true;
-    state_.zero_mark_position = (whole_counts_ < mark_below_ ? mark_below_ : mark_above_) + encoder_error_;
-    find_marks();
-  }
-  state_.position = whole_counts_ + encoder_error_;
-  if (config_.encoder_noise_counts > 0.0)
-    state_.position += std::llround(2.0 * config_.encoder_noise_counts * even_noise());
-  state_.velocity = omega_ * counts_per_rad_;
-  const double off = config_.torque_noise_nm > 0.0 ? config_.torque_noise_nm * noise() : 0.0;
-  state_.torque = (torque_ + off) * nm_to_permille_;
 }
 
 }  // namespace servogate::mock

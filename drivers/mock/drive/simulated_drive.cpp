@@ -55,10 +55,11 @@ const CanFilter* SimulatedDrive::filter() const noexcept { return &inside_->slav
 
 void SimulatedDrive::on_frame(const CanFrame& frame) noexcept {
   Inside& in = *inside_;
-  if (!in.slave.concerned(frame) || in.spoiled(fault::Kind::deaf) || in.spoiled(fault::Kind::freeze) ||
-      in.spoiled(fault::Kind::kill))
+  if (!in.slave.concerned(frame)) return;
+  if (in.any_lasting &&
+      (in.spoiled(fault::Kind::deaf) || in.spoiled(fault::Kind::freeze) || in.spoiled(fault::Kind::kill)))
     return;
-  if (in.slave.immediate(frame)) in.advance_to(frame.timestamp_ns);
+  if (in.due(frame.timestamp_ns) && in.slave.immediate(frame)) in.advance_to(frame.timestamp_ns);
   if (in.any_lasting) {
     CanFrame spoiled = frame;
     if (in.answer_with_abort(frame) || !in.spoil_rpdo(spoiled)) return;

@@ -72,16 +72,31 @@ double ServoProfile::target_from_object(std::int64_t object_value) noexcept {
   return static_cast<double>(here + difference + origin_);
 }
 
-double ServoProfile::limited_target(double target) noexcept {
+double ServoProfile::within_limits(double target) const noexcept {
   // The whole range of the object, or an empty one, is no limit: the axis may turn without end.
   constexpr std::int64_t kWholeRange = 0xFFFF'FFFF;
   const std::int64_t width = v_.limit_max - v_.limit_min;
   if (width <= 0 || width == kWholeRange) return target;
   const auto low = static_cast<double>(v_.limit_min + origin_),
              high = static_cast<double>(v_.limit_max + origin_);
-  if (target >= low && target <= high) return target;
-  internal_limit_ = true;
-  return target < low ? low : high;
+  return target < low ? low : target > high ? high : target;
+}
+
+double ServoProfile::limited_target(double target) noexcept {
+  const double limited = within_limits(target);
+  internal_limit_ = internal_limit_ || limited != target;
+  return limited;
+}
+
+// What cyclic_position() would make of it: a segment from where the axis rests to the same place.
+void ServoProfile::drop_target_that_is_met() noexcept {
+  if (!new_target_ || mode_ != OperationMode::cyclic_sync_position || !power_.following() || halted()) return;
+  if (ticks_left_ != 0 || demand_.velocity != 0.0 || demand_.acceleration != 0.0 ||
+      previous_segment_velocity_ != 0.0)
+    return;
+  const double target = target_from_object(v_.target_position + v_.position_offset);
+  if (target == cyclic_target_ && target == demand_.position && target == within_limits(target))
+    new_target_ = false;
 }
 
 void ServoProfile::plan_cyclic_segment(double target) noexcept {

@@ -154,25 +154,9 @@ void ServoProfile::interpolation_period_changed() noexcept {
   segment_ticks_ = std::max(1, static_cast<int>(std::lround(seconds / h_)));
 }
 
-const ServoCommand& ServoProfile::tick(const ServoState& servo, const DriveInputs& inputs) noexcept {
-  servo_ = servo;
-  inputs_ = inputs;
-  if (probe_.enabled()) probe_.tick(inputs_, servo_, origin_);
-  supervise();
-  if (!power_.goes_on(static_cast<std::uint16_t>(v_.controlword))) decide();
-  select_mode();
-  generate();
-  following_error_ = command_.position - static_cast<double>(servo_.position);
-  command_.brake_released = brake_released();
-  const auto most = static_cast<double>(v_.max_torque);
-  command_.torque_limit_positive = std::min(most, static_cast<double>(v_.torque_limit_positive));
-  command_.torque_limit_negative = std::min(most, static_cast<double>(v_.torque_limit_negative));
-  return command_;
-}
-
 // The mask gives bit 0 of 60FEh:01, "set brake", to whoever leads the drive. Source: CiA 402-2, "Object
 // 60FEh: Digital outputs".
-bool ServoProfile::brake_released() const noexcept {
+inline bool ServoProfile::brake_released() const noexcept {
   const bool by_bus = v_.digital_output_mask & 1;
   const bool own = power_.brake_released() || (by_bus && !settings_.quirks.brake_interlock);
   return own && !(by_bus && v_.digital_outputs & 1);
@@ -246,7 +230,7 @@ void ServoProfile::on_abort_connection(std::uint16_t error_code) noexcept {
 
 // Bit 13 comes with the end of 6066h, not with the first tick outside of 6065h, and stays until the fault is
 // reset. Source: CiA 402-2, "Object 6066h: Following error time out".
-void ServoProfile::supervise() noexcept {
+inline void ServoProfile::supervise() noexcept {
   if (!in_fault()) following_exceeded_ = false;
   if (!power_.energised()) {
     following_time_ = 0.0;
@@ -275,7 +259,7 @@ void ServoProfile::hold_actual() noexcept {
   torque_demand_ = 0.0;
 }
 
-void ServoProfile::generate() noexcept {
+inline void ServoProfile::generate() noexcept {
   internal_limit_ = false;
   const bool turns = std::abs(servo_.velocity) > static_cast<double>(v_.velocity_threshold);
   threshold_time_ = turns ? threshold_time_ + h_ : 0.0;
@@ -295,6 +279,22 @@ void ServoProfile::generate() noexcept {
   } else {
     run_mode();
   }
+}
+
+const ServoCommand& ServoProfile::tick(const ServoState& servo, const DriveInputs& inputs) noexcept {
+  servo_ = servo;
+  inputs_ = inputs;
+  if (probe_.enabled()) probe_.tick(inputs_, servo_, origin_);
+  supervise();
+  if (!power_.goes_on(static_cast<std::uint16_t>(v_.controlword))) decide();
+  select_mode();
+  generate();
+  following_error_ = command_.position - static_cast<double>(servo_.position);
+  command_.brake_released = brake_released();
+  const auto most = static_cast<double>(v_.max_torque);
+  command_.torque_limit_positive = std::min(most, static_cast<double>(v_.torque_limit_positive));
+  command_.torque_limit_negative = std::min(most, static_cast<double>(v_.torque_limit_negative));
+  return command_;
 }
 
 double ServoProfile::slow_down() const noexcept {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "firmware_if/canopen/402/mode.hpp"
 #include "firmware_if/canopen/device/drive/drive_objects.hpp"
@@ -49,6 +51,22 @@ class ServoProfile final : public DeviceProfile {
   std::uint16_t error_code() const noexcept { return static_cast<std::uint16_t>(v_.error_code); }
   /// Position of 6064h before it is cut to 32 bits.
   std::int64_t position() const noexcept { return servo_.position - origin_; }
+
+  /// For whoever leaves out ticks that would change nothing: all that tick() goes by and changes here but for
+  /// the time inside of the window. The rest of it are objects from 6000h on.
+  std::span<const std::byte> inner_state() const noexcept {
+    const auto* const first = reinterpret_cast<const std::byte*>(&power_);
+    return {first, reinterpret_cast<const std::byte*>(this + 1)};
+  }
+  /// A target that came again while the axis rests there asks for nothing.
+  void drop_target_that_is_met() noexcept;
+  std::optional<double> time_in_window() const noexcept { return window_time_; }
+  /// A tick went by since `before`, and did nothing else with that time than to count it.
+  bool only_counts_window(std::optional<double> before) const noexcept {
+    return mode_ == OperationMode::profile_velocity && before && window_time_ &&
+           *window_time_ == *before + h_;
+  }
+  void count_window() noexcept { *window_time_ += h_; }
 
   AbortCode before_write(ObjectDictionary::Slot slot, std::int64_t value) noexcept override;
   void after_write(ObjectDictionary::Slot slot) noexcept override;
@@ -126,6 +144,7 @@ class ServoProfile final : public DeviceProfile {
 
   double target_from_object(std::int64_t object_value) noexcept;
   double limited_target(double target) noexcept;
+  double within_limits(double target) const noexcept;
   double profile_speed() const noexcept;
   double acceleration_of(double asked) const noexcept;
   double deceleration_of(double asked) const noexcept;
@@ -148,7 +167,10 @@ class ServoProfile final : public DeviceProfile {
   DriveVariables v_;
   double h_;
   EmcyProducer* emcy_ = nullptr;
-  PowerState power_;
+  /// How long the target (pp, pv) has been inside its window; nullopt: it is not.
+  std::optional<double> window_time_;
+  image::Nanoseconds sync_at_ = 0;
+  PowerState power_;  ///< the first of inner_state()
   ProbeLatch probe_;
   HomingSequence homing_;
   OperationMode mode_ = OperationMode::none;
@@ -167,9 +189,6 @@ class ServoProfile final : public DeviceProfile {
   double following_time_ = 0.0;
   bool following_exceeded_ = false;
   double threshold_time_ = 0.0;  ///< how long the speed (pv) has been above 606Fh
-  /// How long the target (pp, pv) has been inside its window; nullopt: it is not.
-  std::optional<double> window_time_;
-  image::Nanoseconds sync_at_ = 0;
 
   // csp
   ObjectDictionary::Slot target_position_slot_, controlword_slot_, ip_record_slot_;
