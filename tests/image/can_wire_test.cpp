@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware_if/image/frames/can_wire.hpp"
+#include "firmware_if/image/frames/counted_frames.hpp"
 #include "tests/property_seed.hpp"
 
 namespace servogate::image {
@@ -134,6 +135,27 @@ TEST(FrameBits, random_frames_agree_with_the_rule_bit_by_bit_and_stay_below_the_
     const std::uint32_t payload = f.remote ? 0u : f.length;
     ASSERT_LE(frame_bits(f) + kIntermissionBits, worst_case_bits(payload, f.extended));
   }
+}
+
+TEST(CountedFrames, frames_that_come_again_and_others_between_them_have_their_own_length) {
+  const auto seed = static_cast<unsigned>(servogate::test::property_seed());
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  CountedFrames counted;
+  for (int i = 0; i < 20'000; ++i) {
+    // Few of each, so that they come again and push one another out.
+    CanFrame f = frame(static_cast<std::uint32_t>(random() % 4 * 0x80 + random() % 3), {}, random() % 5 == 0);
+    f.remote = random() % 5 == 0;
+    f.length = static_cast<std::uint8_t>(random() % 2 * 8);
+    f.data[random() % 8] = static_cast<std::uint8_t>(random() % 2 * 0xFF);
+    ASSERT_EQ(counted.bits(f), frame_bits(f));
+  }
+}
+
+TEST(CountedFrames, a_length_that_somebody_has_counted_is_taken_from_the_frame) {
+  CanFrame f = frame(0x080, {});
+  f.wire_bits = 77;
+  EXPECT_EQ(CountedFrames().bits(f), 77u);
 }
 
 TEST(FrameBits, the_worst_case_of_the_formula_is_reached_by_some_frame) {

@@ -15,14 +15,15 @@ bool CanSegment::Endpoint::send(const CanFrame& frame) noexcept {
     ++segment_.statistics_.refused;
     return false;
   }
-  Pending& p = pending_.emplace_back();
-  p.frame = frame;
-  p.frame.wire_bits = static_cast<std::uint16_t>(image::known_bits(frame));
-  p.key = arbitration_key(frame);
-  segment_.waiting_ |= bit();
-  p.not_before = segment_.now_;
+  Nanoseconds from = segment_.now_;
   if (!segment_.faults_.empty())
-    if (const fault::Fault* fault = segment_.fault_for(frame, number_, true)) p.not_before += fault->delay_ns;
+    if (const fault::Fault* fault = segment_.fault_for(frame, number_, true)) from += fault->delay_ns;
+  const Pending p(frame, counted_.bits(frame), from);
+  auto place = pending_.begin();
+  if (segment_.config_.priority_mailboxes)
+    while (place != pending_.end() && place->key > p.key) ++place;
+  pending_.insert(place, p);
+  segment_.waiting_ |= bit();
   return true;
 }
 
@@ -50,32 +51,6 @@ image::CanState CanSegment::Endpoint::state() const noexcept {
   const std::uint32_t worst = std::max(transmit_errors_, receive_errors_);
   if (worst >= kPassive) return image::CanState::error_passive;
   return worst >= kWarning ? image::CanState::error_warning : image::CanState::error_active;
-}
-
-Nanoseconds CanSegment::Endpoint::ready_at() const noexcept {
-  if (pending_.empty() || !on_bus()) return kNever;
-  Nanoseconds earliest = pending_.front().not_before;
-  if (earliest > segment_.now_ && segment_.config_.priority_mailboxes)
-    for (const Pending& p : pending_) earliest = std::min(earliest, p.not_before);
-  return std::max(earliest, suspended_until_);
-}
-
-const CanSegment::Endpoint::Pending* CanSegment::Endpoint::offer() const noexcept {
-  if (!on_bus() || suspended_until_ > segment_.now_) return nullptr;
-  const Pending* best = nullptr;
-  for (const Pending& p : pending_) {
-    if (p.not_before <= segment_.now_ && (best == nullptr || p.key < best->key)) best = &p;
-    if (!segment_.config_.priority_mailboxes) break;
-  }
-  return best;
-}
-
-void CanSegment::Endpoint::drop_pending(std::uint32_t key, const CanFrame& frame) noexcept {
-  const auto it = std::find_if(pending_.begin(), pending_.end(), [key, &frame](const Pending& p) {
-    return p.key == key && same_content(p.frame, frame);
-  });
-  if (it != pending_.end()) pending_.erase(it);
-  if (pending_.empty()) segment_.waiting_ &= ~bit();
 }
 
 void CanSegment::Endpoint::sent() noexcept {

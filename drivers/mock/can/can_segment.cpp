@@ -123,7 +123,7 @@ void CanSegment::start_frame() noexcept {
     const std::uint64_t bit = std::uint64_t{1} << i;
     if (best != nullptr && offered->key == best->key) {
       // Two senders of one identifier: equal bits pass as one frame, different ones are a bit error.
-      attempt_.error |= !same_content(offered->frame, best->frame);
+      attempt_.error |= !offered->same(*best);
       attempt_.senders |= bit;
     } else {
       best = offered;
@@ -133,9 +133,9 @@ void CanSegment::start_frame() noexcept {
     }
   }
   if (best == nullptr) return;
-  attempt_.frame = best->frame;
+  best->fill(attempt_.frame);
   attempt_.key = best->key;
-  attempt_.bits = best->frame.wire_bits;
+  attempt_.bits = best->bits;
   attempt_.drop = attempt_.duplicate = false;
   if (const fault::Fault* fault =
           faults_.empty() ? nullptr : fault_for(attempt_.frame, attempt_.sender, false)) {

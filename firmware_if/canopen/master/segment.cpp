@@ -11,6 +11,7 @@
 #include "firmware_if/canopen/master/bus_meter.hpp"
 #include "firmware_if/canopen/master/bus_node.hpp"
 #include "firmware_if/canopen/master/sdo_budget.hpp"
+#include "firmware_if/image/frames/counted_frames.hpp"
 
 namespace servogate::canopen {
 namespace {
@@ -165,7 +166,7 @@ struct Segment::Impl {
     explicit CountingBus(image::CanBus& bus) : bus_(bus) {}
     bool send(const image::CanFrame& frame) noexcept override {
       image::CanFrame counted = frame;
-      counted.wire_bits = static_cast<std::uint16_t>(image::known_bits(frame));
+      counted.wire_bits = lengths.bits(frame);
       if (!bus_.send(counted)) return false;
       ++sent;
       meter.add(counted);
@@ -186,6 +187,7 @@ struct Segment::Impl {
 
     std::uint64_t sent = 0, received = 0, errors = 0;
     BusMeter meter;
+    image::CountedFrames lengths;
 
    private:
     image::CanBus& bus_;
