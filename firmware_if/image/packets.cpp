@@ -20,23 +20,42 @@ constexpr struct {
 } kPacketNames[] = {
     {"SYVAR", Packet::v, Format::by}, {"SA", Packet::a, Format::bl}, {"SK", Packet::k, Format::by}};
 
-template <typename T>
-double load(const std::uint8_t* p) noexcept {
-  T v;
-  std::memcpy(&v, p, sizeof v);
-  return static_cast<double>(v);
-}
+/// The numbers of one packet.
+struct Numbers {
+  std::uint8_t* data;
+  std::uint32_t size;
 
-template <typename T>
-bool store_integer(std::uint8_t* p, double value) noexcept {
-  const double rounded = std::nearbyint(value);
-  if (!(rounded >= static_cast<double>(std::numeric_limits<T>::min()) &&
-        rounded <= static_cast<double>(std::numeric_limits<T>::max())))
-    return false;
-  const T v = static_cast<T>(rounded);
-  std::memcpy(p, &v, sizeof v);
-  return true;
-}
+  template <typename T>
+  std::uint8_t* at(std::uint32_t index) const noexcept {
+    const std::uint32_t byte = index * static_cast<std::uint32_t>(sizeof(T));
+    return byte + sizeof(T) <= size ? data + byte : nullptr;
+  }
+  template <typename T>
+  double load(std::uint32_t index) const noexcept {
+    const std::uint8_t* const from = at<T>(index);
+    if (from == nullptr) return 0.0;
+    T v;
+    std::memcpy(&v, from, sizeof v);
+    return static_cast<double>(v);
+  }
+  template <typename T>
+  bool store(std::uint32_t index, T v) const noexcept {
+    std::uint8_t* const to = at<T>(index);
+    if (to == nullptr) return false;
+    std::memcpy(to, &v, sizeof v);
+    return true;
+  }
+  template <typename T>
+  bool store_integer(std::uint32_t index, double value) const noexcept {
+    constexpr auto kLow = static_cast<double>(std::numeric_limits<T>::min()),
+                   kHigh = static_cast<double>(std::numeric_limits<T>::max());
+    if (value >= kLow && value <= kHigh)
+      if (const T whole = static_cast<T>(value); static_cast<double>(whole) == value)
+        return store(index, whole);  // as most: nothing to round
+    const double rounded = std::nearbyint(value);
+    return rounded >= kLow && rounded <= kHigh && store(index, static_cast<T>(rounded));
+  }
+};
 
 }  // namespace
 
@@ -87,51 +106,42 @@ void Packets::resize(std::uint32_t k_bytes, std::uint32_t v_bytes) noexcept {
 }
 
 double Packets::number(const Place& p) const noexcept {
-  if (!contains(p)) return 0.0;
-  const std::uint8_t* at = data(p.packet) + p.byte();
+  const Numbers numbers{const_cast<Packets*>(this)->data(p.packet), size(p.packet)};
   switch (p.format) {
     case Format::bl:
-      return (*at >> p.bit()) & 1;
+      return p.index / 8 < numbers.size ? numbers.data[p.index / 8] >> p.bit() & 1 : 0;
     case Format::by:
-    case Format::ch:
-      return *at;
+      return numbers.load<std::uint8_t>(p.index);
     case Format::in:
-      return load<std::int16_t>(at);
+      return numbers.load<std::int16_t>(p.index);
     case Format::li:
-      return load<std::int32_t>(at);
+      return numbers.load<std::int32_t>(p.index);
     case Format::re:
-      return load<float>(at);
+      return numbers.load<float>(p.index);
     case Format::lr:
-      return load<double>(at);
+      return numbers.load<double>(p.index);
+    case Format::ch:
+      return contains(p) ? numbers.data[p.byte()] : 0;
   }
   return 0.0;
 }
 
 bool Packets::set_number(const Place& p, double value) noexcept {
-  if (!contains(p)) return false;
-  std::uint8_t* at = data(p.packet) + p.byte();
+  const Numbers numbers{data(p.packet), size(p.packet)};
   switch (p.format) {
-    case Format::bl: {
-      if (value != 0.0 && value != 1.0) return false;
-      const auto mask = static_cast<std::uint8_t>(1u << p.bit());
-      *at = static_cast<std::uint8_t>(value != 0.0 ? (*at | mask) : (*at & ~mask));
-      return true;
-    }
+    case Format::bl:
+      return (value == 0.0 || value == 1.0) && set_bit(p, value != 0.0);
     case Format::by:
-      return store_integer<std::uint8_t>(at, value);
+      return numbers.store_integer<std::uint8_t>(p.index, value);
     case Format::in:
-      return store_integer<std::int16_t>(at, value);
+      return numbers.store_integer<std::int16_t>(p.index, value);
     case Format::li:
-      return store_integer<std::int32_t>(at, value);
-    case Format::re: {
-      if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()))) return false;
-      const auto v = static_cast<float>(value);
-      std::memcpy(at, &v, sizeof v);
-      return true;
-    }
+      return numbers.store_integer<std::int32_t>(p.index, value);
+    case Format::re:
+      return std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()) &&
+             numbers.store(p.index, static_cast<float>(value));
     case Format::lr:
-      std::memcpy(at, &value, sizeof value);
-      return true;
+      return numbers.store(p.index, value);
     case Format::ch:
       return false;
   }

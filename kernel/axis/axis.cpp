@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "firmware_if/image/put_bit.hpp"
 
 namespace servogate::axis {
 
@@ -387,7 +388,7 @@ void Axis::write_image(image::ProcessImage& image, const PowerSequence::Outputs&
   using image::kAxisFields;
   const std::uint32_t base = image::axis_base(index_);
   auto put = [&](const image::Place& p, bool value) __attribute__((always_inline)) {
-    image.packets.set_bit(image::at(p, base), value);  // a few instructions where the place is known
+    image::put_bit(image.packets, image::at(p, base), value);
   };
   const bool follows = !asleep_ && drive_.state == image::DriveState::operation_enabled;
   put(field(kAxisFields, "enabled"), drive_.online && follows);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "firmware_if/image/put_bit.hpp"
 
 namespace servogate::axis {
 
@@ -389,7 +390,7 @@ void Spindle::write_interface(image::ProcessImage& image) const noexcept {
   using image::kSpindleFields;
   const std::uint32_t base = image::spindle_base(index_);
   auto put = [&](const image::Place& p, bool value) __attribute__((always_inline)) {
-    image.packets.set_bit(image::at(p, base), value);  // a few instructions where the place is known
+    image::put_bit(image.packets, image::at(p, base), value);
   };
   put(field(kSpindleFields, "run"), mode_ != SpindleMode::stop);
   put(field(kSpindleFields, "cw"), mode_ == SpindleMode::cw);

@@ -27,6 +27,15 @@ struct Move {
   std::uint32_t address;
 };
 
+/// The same of a bit that is taken in.
+struct BitIn {
+  std::uint32_t address;
+  std::uint16_t byte;
+  image::Packet packet;
+  std::uint8_t bit;
+};
+static_assert(image::kPacketKMaxSize <= 0xFFFF && image::kPacketASize <= 0xFFFF);
+
 }  // namespace
 
 struct Engine::State {
@@ -35,7 +44,8 @@ struct Engine::State {
     bool last = false;
   };
   std::vector<std::uint8_t> memory;
-  std::vector<Move> taken_in, put_back;
+  std::vector<BitIn> bits_in;  ///< most places are bits: a list of their own, as short as a scan wants it
+  std::vector<Move> taken_in, put_back;  ///< the others; all that is written, in its order
   std::vector<Forcing> forces;
   std::vector<Times> task_times;
   const image::Clock* clock = nullptr;
@@ -164,8 +174,13 @@ Engine::Engine(std::shared_ptr<const Image> image)
   state_->forces.reserve(kMaxForces);
   state_->task_times.resize(image_->tasks.size());
   for (const Image::Shared& place : image_->places) {
-    state_->taken_in.push_back(move_of(place));
-    if (place.written) state_->put_back.push_back(state_->taken_in.back());
+    const Move move = move_of(place);
+    if (move.kind == Move::Kind::bit)
+      state_->bits_in.push_back(
+          {move.address, static_cast<std::uint16_t>(move.byte), move.packet, move.detail});
+    else
+      state_->taken_in.push_back(move);
+    if (place.written) state_->put_back.push_back(move);
   }
   for (const Image::RetainedCell& c : image_->retained) {
     auto& copies = state_->retained;
@@ -193,12 +208,10 @@ void Engine::take_inputs(image::Packets& packets) noexcept {
   State& s = *state_;
   std::uint8_t* const mem = s.memory.data();
   const std::array<std::uint8_t*, 3> packet = packets_of(packets);
-  // Most places are bits; a branch of their own is shorter than the choice among all kinds.
+  for (const BitIn& b : s.bits_in)
+    mem[b.address] = (packet[static_cast<std::size_t>(b.packet)][b.byte] >> b.bit) & 1;
   for (const Move& m : s.taken_in)
-    if (m.kind == Move::Kind::bit)
-      mem[m.address] = (packet[static_cast<std::size_t>(m.packet)][m.byte] >> m.detail) & 1;
-    else
-      take_in(m, packet[static_cast<std::size_t>(m.packet)] + m.byte, mem + m.address);
+    take_in(m, packet[static_cast<std::size_t>(m.packet)] + m.byte, mem + m.address);
   if (s.first)
     for (const Image::Shared& p : image_->places)
       if (p.initialised) {
@@ -221,6 +234,7 @@ void Engine::give_outputs(image::Packets& packets) noexcept {
   const std::uint8_t* const mem = s.memory.data();
   for (const Move& m : s.put_back) {
     std::uint8_t* const to = packet[static_cast<std::size_t>(m.packet)] + m.byte;
+    // A branch of their own for bits is shorter than the choice among all kinds.
     if (m.kind == Move::Kind::bit)
       set_bit(to, m.detail, mem[m.address] != 0);
     else

@@ -5,9 +5,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <random>
 
 #include "firmware_if/image/interface_map.hpp"
+#include "firmware_if/image/put_bit.hpp"
 #include "tests/places/places.hpp"
 
 namespace servogate::image {
@@ -116,6 +118,37 @@ TEST(InterfaceMap, no_two_places_of_the_interface_overlap_and_all_lie_in_k) {
     for (std::size_t j = i + 1; j < symbols.size(); ++j)
       EXPECT_FALSE(symbols[i].place.overlaps(symbols[j].place)) << symbols[i].name << " " << symbols[j].name;
   }
+}
+
+TEST(Packets, integers_are_rounded_to_the_nearest_and_must_fit_then) {
+  Packets p;
+  const Place by = place("SK5"), in = place("SK10.IN");
+  for (const auto& [value, stored] : {std::pair{2.5, 2.0}, {3.5, 4.0}, {-0.4, 0.0}, {255.4, 255.0}}) {
+    EXPECT_TRUE(p.set_number(by, value));
+    EXPECT_EQ(p.number(by), stored);
+  }
+  EXPECT_TRUE(p.set_number(in, -32768.5));
+  EXPECT_EQ(p.number(in), -32768.0);
+  for (const double beyond : {255.5, -0.6, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    p.set_number(by, 7);
+    EXPECT_FALSE(p.set_number(by, beyond));
+    EXPECT_EQ(p.number(by), 7.0);
+  }
+}
+
+TEST(Packets, put_bit_does_what_set_bit_does) {
+  Packets a, b;
+  std::mt19937 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Place bit{random() % 2 ? Packet::a : Packet::k, Format::bl,
+                    static_cast<std::uint32_t>(random() % (9 * kPacketASize))};
+    const bool on = random() % 2;
+    a.set_bit(bit, on);
+    put_bit(b, bit, on);
+    EXPECT_EQ(a.bit(bit), b.bit(bit));
+  }
+  EXPECT_EQ(std::memcmp(a.data(Packet::a), b.data(Packet::a), kPacketASize), 0);
+  EXPECT_EQ(std::memcmp(a.data(Packet::k), b.data(Packet::k), kPacketKDefaultSize), 0);
 }
 
 TEST(InterfaceMap, a_field_of_the_second_process_lies_one_block_further) {

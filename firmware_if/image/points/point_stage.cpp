@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_if/image/put_bit.hpp"
+
 namespace servogate::image {
 
 PointStage::PointStage(std::vector<PointRule> points, int source, std::vector<AgeLimits> groups)
@@ -50,6 +52,31 @@ Quality PointStage::quality(std::size_t group, Nanoseconds t) const noexcept {
   return g.limits.stale_ns > 0 && age > g.limits.stale_ns ? Quality::stale : Quality::good;
 }
 
+inline void PointStage::show(Point& p, ProcessImage& image) noexcept {
+  if (!p.rule.digital) {
+    if (p.known) image.packets.set_number(p.rule.place, p.value);
+    return;
+  }
+  const bool level = p.known ? p.value != 0.0 : image.packets.bit(p.rule.place);
+  // Most stand as they were shown.
+  if (!p.started || level != p.seen || p.shown != p.seen) {
+    if (!p.started) {
+      p.started = true;
+      p.seen = p.shown = level;
+    }
+    if (level != p.seen) {
+      p.seen = level;
+      p.changed_ns = image.now.t_ns;
+    }
+    if (image.now.t_ns - p.changed_ns >= p.rule.debounce_ns) p.shown = p.seen;
+  }
+  if (!p.known) return;
+  if (p.rule.place.format == Format::bl)
+    put_bit(image.packets, p.rule.place, p.shown);
+  else
+    image.packets.set_bit(p.rule.place, p.shown);
+}
+
 void PointStage::settle(ProcessImage& image) noexcept {
   if (start_ns_ < 0) start_ns_ = image.now.t_ns;
   std::size_t group = groups_.size();
@@ -72,24 +99,6 @@ void PointStage::settle(ProcessImage& image) noexcept {
   image.edges.note_lost(edges_.take_lost());
   edges_.clear();
   judge(image);
-}
-
-void PointStage::show(Point& p, ProcessImage& image) noexcept {
-  if (!p.rule.digital) {
-    if (p.known) image.packets.set_number(p.rule.place, p.value);
-    return;
-  }
-  const bool level = p.known ? p.value != 0.0 : image.packets.bit(p.rule.place);
-  if (!p.started) {
-    p.started = true;
-    p.seen = p.shown = level;
-  }
-  if (level != p.seen) {
-    p.seen = level;
-    p.changed_ns = image.now.t_ns;
-  }
-  if (image.now.t_ns - p.changed_ns >= p.rule.debounce_ns) p.shown = p.seen;
-  if (p.known) image.packets.set_bit(p.rule.place, p.shown);
 }
 
 void PointStage::judge(ProcessImage& image) const noexcept {
