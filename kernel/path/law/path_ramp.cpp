@@ -356,6 +356,7 @@ bool PathRamp::keeps_to(const CourseView& view, const RateLimits& limits, double
 /// the speed is at its greatest or least. While the law's speed is constant along a line nothing else is
 /// needed: there the acceleration goes straight from one to the next.
 double PathRamp::next_place(double t, double step) const noexcept {
+  constexpr double kNear = 1.2;  // steps from a knot
   if (interval_.even() && fastest_ > 0.0) {
     const double s = motion(t).s;
     const double left = forwards_ > 0.0 ? begin_ + whole_ - s : s - begin_;
@@ -365,7 +366,10 @@ double PathRamp::next_place(double t, double step) const noexcept {
     const MotionState now = motion(t);
     const double left = forwards_ > 0.0 ? begin_ + whole_ - now.s : now.s - begin_,
                  in = left / std::abs(now.v);
-    if (in < 2.0 * step) step = std::max(0.0, in) + 0.5 * kBesideKnot;
+    if (in < kNear * step)
+      step = std::max(0.0, in) + 0.5 * kBesideKnot;
+    else if (in < 2.0 * step)
+      step = 0.5 * in;
   }
   double to = std::min(t + step, profile_.duration());
   if (turns_ > t) to = std::min(to, turns_);
