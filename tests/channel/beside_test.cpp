@@ -221,6 +221,34 @@ TEST_F(Beside, functions_reach_the_plc_and_the_program_waits_until_the_spindle_t
   ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
 }
 
+TEST_F(Beside, a_program_is_not_resumed_in_any_cycle_of_a_function_nor_from_beside_its_path) {
+  for (const bool away : {false, true}) {
+    Rig rig(kCut);
+    hold(rig);
+    if (away) jog(rig, 2, 10.0);
+    rig.logic.delay_cycles = 40;
+    ASSERT_EQ(function(rig, Function::m, 8), Refusal::none);
+    ASSERT_EQ(function(rig, Function::spindle_clockwise, 700.0), Refusal::none);
+    const double x = rig.x();
+    const std::size_t functions = rig.logic.strobes.size();
+    for (const RequestKind on : {RequestKind::resume, RequestKind::start})
+      for (int cycle = 0; cycle < 60; ++cycle) EXPECT_NE(rig.ask(on), Refusal::none) << cycle;
+    EXPECT_GT(rig.logic.strobes.size(), functions);
+    rig.run(1.0);
+    EXPECT_EQ(rig.ask(RequestKind::resume), away ? Refusal::off_path : Refusal::spindle_differs);
+    EXPECT_EQ(rig.x(), x);
+    ASSERT_EQ(function(rig, Function::spindle_clockwise, 1000.0), Refusal::none);
+    rig.run(1.0);
+    if (away) {
+      EXPECT_EQ(rig.ask(RequestKind::resume), Refusal::off_path);
+      ASSERT_EQ(rig.ask(RequestKind::reposition), Refusal::none);
+      stand(rig);
+    }
+    ASSERT_EQ(rig.ask(RequestKind::resume), Refusal::none);
+    ASSERT_TRUE(rig.until([&] { return rig.state() == ProcessState::ended; })) << rig.alarm_list();
+  }
+}
+
 TEST_F(Beside, another_tool_in_the_spindle_keeps_the_program_from_going_on) {
   Rig rig("N5 T3.3 M6\nN10 G1 X200 Y100 F9000\nN40 M30\n");
   hold(rig);

@@ -91,6 +91,16 @@ TEST(Forecast, of_zigzags_within_the_time_of_a_corner_is_right_to_a_sixth) {
   expect_share(0.17, zigzag(100, 1, 100), mill(), "1 mm");
 }
 
+TEST(Forecast, of_steps_that_the_tolerance_hides_and_of_slow_feeds_is_right_to_a_tenth) {
+  Elements steps{line_to(10, 0, 0, 100)};
+  for (int k = 1; k <= 4000; ++k) steps.push_back(line_to(10 + 0.001 * k, 0.0004 * (k % 2), 0, 100));
+  expect_share(0.1, steps, mill(), "micrometres from side to side");
+  expect_share(0.03, circle(20, 500, 100), mill(), "a circle from rest to rest in a second");
+  constexpr double kVerySlow = 0.1 / 60.0;
+  expect_share(0.02, {line_to(0.02, 0, 0, kVerySlow), line_to(0.02, 0.02, 0, kVerySlow)}, mill(),
+               "0.1 mm/min");
+}
+
 TEST(Forecast, of_random_programs_together_is_right_to_a_twentieth) {
   const std::uint64_t first = servogate::test::property_seed();
   double driven = 0.0, foretold = 0.0;

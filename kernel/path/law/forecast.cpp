@@ -18,13 +18,15 @@ constexpr std::size_t kMostPlaces = 8192;
 constexpr double kOfLeg = 0.5, kOfFeed = 0.0008, kBeside = 0.02, kLeastSpacing = 0.005;
 constexpr double kStraight = 0.9998;  // cosine: hardly a bend
 // What makes the time right, found by comparing with laws (tests/path/forecast_test.cpp): of the jerk between
-// places, as a ramp ends without acceleration; of the squared speed in accelerations; of the speed that a
-// jerk allows over a scale, and a bend.
-constexpr double kJerk = 0.5, kSlope = 1.9, kOverScale = 0.92, kAtBend = 0.85;
+// places, as a ramp ends without acceleration, and from and to a rest; of the squared speed in accelerations;
+// of the speed that a jerk allows over a scale, and a bend.
+constexpr double kJerk = 0.5, kJerkAtRest = 0.8, kSlope = 1.9, kOverScale = 0.92, kAtBend = 0.85;
 constexpr double kCarried = 0.2;     // of an acceleration by the time of a corner: what needs no rest there
 constexpr double kCornerTime = 0.7;  // no two corners are nearer to each other than that of the time of one
 
-constexpr double kReached = 0.6;  // of an axis' velocity: it is what binds
+constexpr double kShortest = 1e-6;  // mm between nodes
+constexpr double kReached = 0.6;    // of an axis' velocity: it is what binds
+constexpr double kHidden = 0.5;     // of the tolerance: a step beside the way that is no corner of its own
 
 // y(v) by the root of jerk: the length in which jerk alone reaches v, from rest.
 double y_of(double v) { return std::sqrt(2.0) / 3.0 * v * std::sqrt(v); }
@@ -191,6 +193,8 @@ void SpeedForecast::find_bends(const Run& run, double end) {
     bends_.push_back(b);
   }
   if (!bends_.empty()) bends_.back().after = std::max(end, run.leg(k).end()) - from;
+  for (Bend& b : bends_)
+    if (std::min(b.before, b.after) * b.turn < kHidden * b.tolerance) b.speed = kUnknown;
   std::size_t n = 0;
   for (std::size_t i = 0; i < places_.size(); ++i) {
     while (n < bends_.size() && bends_[n].u <= begin_ + static_cast<double>(i) * spacing_) ++n;
@@ -253,7 +257,9 @@ std::size_t SpeedForecast::place_at(double u) const {
 
 void SpeedForecast::nodes_around(double u, double y, Why why, double tolerance, double end) {
   more_.push_back({u, y, why});
-  for (double s = 0.5 * tolerance; s < 2.0 * spacing_; s *= 1.5) {
+  const Place &p = places_[place_at(u)], &q = places_[place_at(u) + 1];
+  const double ramp = y_of(std::min(p.cap, q.cap)) / p.jerk_root;
+  for (double s = std::min(0.5 * tolerance, std::max(kShortest, ramp)); s < 2.0 * spacing_; s *= 1.5) {
     if (u + s < end) more_.push_back({u + s, kUnknown, {}});
     if (u - s > begin_) more_.push_back({u - s, kUnknown, {}});
   }
@@ -293,12 +299,13 @@ void SpeedForecast::make_nodes(const Run& run, double end, bool last) {
   }
 }
 
-/// So fast it may be beside a node; then it is jerk or acceleration that binds there.
-double SpeedForecast::reach(const Node& from, Node& to) const {
+/// So fast it may be beside a node, with a share of the root of jerk; then it is jerk or acceleration that
+/// binds there.
+double SpeedForecast::reach(const Node& from, Node& to, double share) const {
   if (to.y <= from.y) return to.y;
   const Place& p = places_[place_at(0.5 * (from.u + to.u))];
   const double h = std::abs(to.u - from.u), v = v_of(from.y);
-  const double by_jerk = from.y + p.jerk_root * h;
+  const double by_jerk = from.y + share * p.jerk_root * h;
   if (by_jerk < to.y) {
     to.y = by_jerk;
     to.why = p.jerk_why;
@@ -312,11 +319,18 @@ double SpeedForecast::reach(const Node& from, Node& to) const {
 }
 
 void SpeedForecast::reach_between() {
-  for (std::size_t i = 1; i < nodes_.size(); ++i) reach(nodes_[i - 1], nodes_[i]);
+  const double at_rest = std::sqrt(kJerkAtRest / kJerk);
+  double share = nodes_.front().y == 0.0 ? at_rest : 1.0;
+  for (std::size_t i = 1; i < nodes_.size(); ++i) {
+    const double free = nodes_[i].y;
+    if (reach(nodes_[i - 1], nodes_[i], share) == free) share = 1.0;
+  }
+  share = nodes_.back().y == 0.0 ? at_rest : 1.0;
   bool touched = true;
   free_to_ = begin_;
   for (std::size_t i = nodes_.size() - 1; i-- > 0;) {
-    const double was = nodes_[i].y, y = reach(nodes_[i + 1], nodes_[i]);
+    const double was = nodes_[i].y, y = reach(nodes_[i + 1], nodes_[i], share);
+    if (y == was) share = 1.0;
     if (touched && y >= was && i + 1 < nodes_.size() - 1) {
       touched = false;
       free_to_ = nodes_[i].u;

@@ -14,9 +14,9 @@ namespace servogate::path {
 /// no law is made. Each place has a largest speed, by the feed, by its corner, and by the differences of the
 /// path over all scales that matter; jerk and acceleration bound how that changes along the path. Its time is
 /// right to a fiftieth where the feed is reached, to a tenth where the limits bind, to a sixth in zigzags
-/// that are corners throughout (tests/path/forecast_test.cpp); single moves of tenths of a second may be
-/// further off. Works in windows whose bounds go with the length of the path and not with what has arrived.
-/// Not real-time safe.
+/// that are corners throughout (tests/path/forecast_test.cpp), on curves that the jerk binds from end to end
+/// a fifth too slow at worst; single moves of tenths of a second may be further off. Works in windows whose
+/// bounds go with the length of the path and not with what has arrived. Not real-time safe.
 class SpeedForecast {
  public:
   SpeedForecast(int axes, const Transformation& transformation, MomentSink& sink)
@@ -66,7 +66,7 @@ class SpeedForecast {
   void cap(std::size_t from, std::size_t count, double speed, Why why);
   void make_nodes(const Run& run, double end, bool last);
   void nodes_around(double u, double y, Why why, double tolerance, double end);
-  double reach(const Node& from, Node& to) const;
+  double reach(const Node& from, Node& to, double share) const;
   void reach_between();
   void tell(bool last);
   std::size_t place_at(double u) const;
