@@ -104,7 +104,7 @@ TEST(Geometry, elements_that_cannot_be_driven_are_named) {
   EXPECT_EQ(shape(config, {}, line_to(1e9, 0, 0, 50)).flaw, Flaw::not_finite);
   EXPECT_EQ(shape(config, {}, line_to(1, 0, 0, 0)).flaw, Flaw::no_feed);
   EXPECT_EQ(shape(config, {}, arc_to(10, 10, 10.1, 0, -90, 50)).flaw, Flaw::radius);
-  EXPECT_EQ(shape(config, {}, arc_to(0, 0, 0, 0, 360, 50)).flaw, Flaw::radius);
+  EXPECT_EQ(shape(config, {}, arc_to(0, 0, 0, 0, 360, 50)).flaw, Flaw::no_radius);
   EXPECT_EQ(shape(config, {}, arc_to(10, 10, 10, 0, -80, 50)).flaw, Flaw::sweep);
   Element e = arc_to(10, 10, 10, 0, -90, 50);
   e.axis2 = 0;

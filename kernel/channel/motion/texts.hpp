@@ -67,8 +67,10 @@ inline constexpr text::Entry kFlaws[] = {
      "нет подачи: сначала задайте F (а при подаче на оборот и S)"},
     {"channel.flaw-plane", "the axes of the plane are not two different linear axes",
      "оси плоскости — не две разные линейные оси"},
-    {"channel.flaw-radius", "the radius is zero, or differs between start and end by more than 0.01 mm",
-     "радиус равен нулю или различается в начале и конце более чем на 0,01 мм"},
+    {"channel.flaw-no-radius", "the radius of the arc is below 0.000001 mm",
+     "радиус дуги меньше 0,000001 мм"},
+    {"channel.flaw-radius", "the radius of the arc differs between start and end by more than 0.01 mm",
+     "радиус дуги различается в начале и конце более чем на 0,01 мм"},
     {"channel.flaw-sweep", "the angle does not lead to the end point", "угол не приводит в конечную точку"},
 };
 

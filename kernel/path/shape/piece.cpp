@@ -43,7 +43,8 @@ Flaw shape_arc(const Config& config, const Vector& from, const Element& e, Piece
     return Flaw::not_finite;
   const double r0 = std::hypot(from[p] - e.center1, from[q] - e.center2);
   const double r1 = std::hypot(e.to[p] - e.center1, e.to[q] - e.center2);
-  if (r0 < 1e-6 || r1 < 1e-6 || std::abs(r1 - r0) > kRadiusMismatch) return Flaw::radius;
+  if (std::abs(r1 - r0) > kRadiusMismatch) return Flaw::radius;
+  if (r0 < 1e-6 || r1 < 1e-6) return Flaw::no_radius;
   const double a0 = std::atan2(from[q] - e.center2, from[p] - e.center1);
   const double a1 = std::atan2(e.to[q] - e.center2, e.to[p] - e.center1);
   const double wanted = e.sweep_deg / 180.0 * std::numbers::pi;

@@ -61,7 +61,8 @@ enum class Flaw : std::uint8_t {
   not_finite,   ///< a coordinate, feed or tolerance is not a number or out of any machine (|x| > 1e7)
   no_feed,      ///< feed <= 0
   wrong_plane,  ///< axis1, axis2 equal, rotary or beyond axis_count
-  radius,       ///< the arc's radius is zero, or start and end radius differ by more than 0.011 mm
+  no_radius,    ///< the arc's radius is below 1e-6 mm
+  radius,       ///< those of its start and its end differ by more than 0.011 mm
   sweep,        ///< the sweep does not lead to the end point
 };
 
