@@ -111,7 +111,8 @@ class Process final : public cycle::ProcessInCycle {
 
   /// What the rest of a held program counts on.
   struct Held {
-    std::array<double, path::kMaxAxes> place{};  ///< of the path's axes, machine coordinates
+    std::array<double, path::kMaxAxes> place{};    ///< of the path's axes, machine coordinates
+    std::array<double, path::kMaxAxes> on_path{};  ///< the same, or where a way along the path has led to
     std::array<axis::SpindleMode, image::kMaxSpindles> mode{};
     std::array<double, image::kMaxSpindles> rpm{};
     std::int32_t tool = 0;

@@ -14,6 +14,7 @@ using image::Function;
 using image::ProcessState;
 
 constexpr double kSamePlace = 1e-6;  ///< mm or degrees: the set-point may step by it
+constexpr double kNothing = 1e-9;    ///< mm or degrees
 constexpr double kSameSpeed = 0.5;   ///< rpm
 
 double signed_rpm(axis::SpindleMode mode, double rpm) noexcept {
@@ -81,7 +82,7 @@ void Process::step_aside(cycle::ProcessContext& c) noexcept {
   forward_.reset();
   Held& h = held_as_;
   const std::span<const OwnAxis> own = own_axes();
-  for (const OwnAxis& a : own) h.place[a.path] = c.axes[a.machine].setpoint().x;
+  for (const OwnAxis& a : own) h.place[a.path] = h.on_path[a.path] = c.axes[a.machine].setpoint().x;
   for (std::size_t s = 0; s < c.spindles.size() && s < h.mode.size(); ++s) {
     h.mode[s] = c.spindles[s].mode();
     h.rpm[s] = c.spindles[s].ordered_rpm();
@@ -186,9 +187,11 @@ void Process::work_beside(cycle::ProcessContext& c) noexcept {
 }
 
 void Process::show_beside(cycle::ProcessContext& c) const noexcept {
-  for (const OwnAxis& own : own_axes())
-    c.image.axes[own.machine].beside =
-        aside_ ? c.axes[own.machine].setpoint().x - held_as_.place[own.path] : 0.0;
+  for (const OwnAxis& own : own_axes()) {
+    const double away = c.axes[own.machine].setpoint().x - held_as_.on_path[own.path];
+    const bool on_path = !aside_ || retrace_.moves || std::abs(away) < kNothing;
+    c.image.axes[own.machine].beside = on_path ? 0.0 : away;
+  }
 }
 
 }  // namespace servogate::channel

@@ -90,6 +90,7 @@ void Process::follow_way(cycle::ProcessContext& c) noexcept {
   retrace_.feed = sample.feed;
   retrace_.behind =
       std::max(0.0, retrace_.behind + (retrace_.forward ? -1.0 : 1.0) * sample.feed * seconds(c));
+  for (const OwnAxis& own : own_axes()) held_as_.on_path[own.path] = sample.position[own.path];
   retrace_.tag = sample.tag;
   retrace_.to_go = sample.distance_to_go;
   switch (sample.state) {

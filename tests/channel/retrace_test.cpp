@@ -157,11 +157,16 @@ TEST_F(Retrace, lets_its_axes_be_jogged_away_and_return_leads_them_the_whole_way
   Rig rig(kShapes);
   hold_behind_the_arc(rig);
   const Point held = here(rig);
+  const auto beside = [&rig](std::size_t axis) { return rig.image().axes[axis].beside; };
   back(rig, 30.0);
+  EXPECT_EQ(beside(0), 0.0) << "back on the path is not away from it";
+  EXPECT_EQ(beside(1), 0.0);
   ASSERT_EQ(rig.ask(RequestKind::jog_increment, 10.0, 2), Refusal::none);
   stand(rig);
+  EXPECT_NEAR(beside(2), 10.0, 1e-9);
   EXPECT_EQ(ask(rig, 1.0), Refusal::off_path);
   forward(rig);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(beside(axis), 0.0, 1e-9);
   EXPECT_LE(apart(here(rig), held), 1e-9);
   go_on_to_the_end(rig);
   EXPECT_EQ(rig.violations(), "");
