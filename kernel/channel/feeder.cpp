@@ -185,7 +185,7 @@ void Feeder::take_orders() {
 void Feeder::begin(const FeederOrder& order) {
   generation_ = order.generation;
   position_ = order.position;
-  elements_.own(order.axes);
+  elements_.restart(order.axes);
   block_by_block_ = order.block_by_block;
   acted_in_block_ = false;
   last_line_ = 0;
@@ -431,6 +431,7 @@ bool Feeder::move(const program::Command& command) {
   if (thread) infeed_.put(element.lock);
   if (planner_.add(element)) {
     if (!thread) infeed_.take(from, element.to);
+    elements_.driven(element, from);
     ways_.add(element, from);
     return true;
   }

@@ -17,6 +17,7 @@ class Translation {
     return std::nullopt;
   }
   Result operator()(const program::Dwell& d) const {
+    elements_.rested(d.seconds);
     ForCycle order{EventKind::dwell, {}};
     order.event.value = d.seconds;
     return order;

@@ -210,6 +210,7 @@ Rig::Rig(std::string_view program, std::string_view power_on, double handshake_t
   const char* letters[] = {"X", kind == RigKind::rotary ? "B" : c_axis ? "C" : "Y", "Z"};
   if (kind == RigKind::lathe) config.axes.surface_speed_axis = 0;
   config.axes.spindle_max_rpm = model_.spindle_max_rpm = kSpindleMax;
+  config.axes.spindle_rpm_s = axis::SpindleConfig{}.acceleration;
   for (int a = 0; a < kAxes; ++a) {
     config.axes.machine.push_back(a);
     config.path.limits[static_cast<std::size_t>(a)] = {kLimits.velocity, kLimits.acceleration, kLimits.jerk};

@@ -77,6 +77,21 @@ TEST(FeedPerRevolution, is_right_along_a_contour_of_short_blocks_at_constant_cut
   EXPECT_EQ(rig.violations(), "");
 }
 
+TEST(FeedPerRevolution, is_nearly_right_while_the_spindle_slows_down_less_than_its_cutting_speed_asks_for) {
+  Rig rig("TMR=2\nS2600 M3\nG0 X12 Y0\nG4\nG96 S100\nG95 F1\nG1 X60\nX62 Y3\nG94 G0 X80\nM30\n", "G27", 0.5,
+          RigKind::lathe);
+  int late = 0;
+  rig.each = [&] {
+    const double radius = rig.x(), rpm = rig.image().spindles[0].command_rpm;
+    if (rig.status().line != 7 || radius < 9.0 || radius > 29.0) return;
+    if (rpm > 1.1 * 100.0 * 1000.0 / (2.0 * std::numbers::pi * radius)) ++late;
+    EXPECT_NEAR(per_revolution(rig), 1.0, 0.05) << radius << " at " << rpm << " rpm";
+  };
+  ASSERT_TRUE(rig.finish()) << rig.alarm_list();
+  EXPECT_GT(late, 400);
+  EXPECT_EQ(rig.violations(), "");
+}
+
 TEST(FeedPerRevolution, follows_the_ramp_and_the_override_of_the_spindle) {
   Rig rig("S600 M3\nG95 F0.5\nG1 X100\nM30\n", "G27", 0.5, RigKind::lathe);
   rig.start();

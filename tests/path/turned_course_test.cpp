@@ -168,6 +168,31 @@ TEST(TurnedCourse, keeps_the_feed_per_revolution_at_every_radius_of_a_constant_s
   EXPECT_LE(m.most(), 1.001);
 }
 
+TEST(TurnedCourse, keeps_the_feed_of_a_spindle_that_slows_down_less_than_its_surface_speed_asks_for) {
+  constexpr double kInside = 8.0, kOutside = 30.0, kRamp = 0.015;  // mm; 1/s in a cycle
+  Lathe m;
+  m.begin_at(kInside);
+  double turns = cutting_turns(kInside);
+  Surface surface{kCutting, 0.0, 1.0, turns, 0};
+  surface.late = turns * turns;
+  surface.late_fall = 2.0 * kRamp / m.config.period_s / kPerTurn;
+  m.to({kOutside, 0}, surface, turns);
+  m.to({kOutside + 5, -5});
+  m.planner.finish();
+  int late = 0;
+  ASSERT_TRUE(m.until([&](const Sample& s) {
+    turns += std::clamp(cutting_turns(s.position[0]) - turns, -kRamp, kRamp);
+    m.follower.set_spindle(turns);
+    if (s.state == FollowerState::idle) return true;
+    if (s.position[0] < kInside + 1 || s.position[0] > kOutside - 1) return false;
+    if (turns > 1.2 * cutting_turns(s.position[0])) ++late;
+    EXPECT_NEAR(s.feed / turns, kPerTurn, 0.02 * kPerTurn) << s.position[0];
+    return false;
+  }));
+  EXPECT_GT(late, 500);
+  EXPECT_LE(m.most(), 1.001);
+}
+
 TEST(TurnedCourse, takes_the_time_of_its_surface_speed) {
   // From radius r0 to r1 at f n(r), n = v / (2 pi r): pi (r0^2 - r1^2) / (f v).
   const double seconds = std::numbers::pi * (40.0 * 40.0 - 10.0 * 10.0) / (kPerTurn * kCutting);

@@ -40,6 +40,7 @@ std::optional<text::Finding> Forecast::take(const program::Command& command) {
   }
   if (is_motion(command)) return drive(elements_.element(command, at_), command);
   if (const auto* spindle = std::get_if<program::Spindle>(&command.what)) elements_.take(*spindle);
+  if (const auto* dwell = std::get_if<program::Dwell>(&command.what)) elements_.rested(dwell->seconds);
   if (!passes(command)) rest();
   return std::nullopt;
 }
@@ -48,6 +49,7 @@ std::optional<text::Finding> Forecast::drive(path::Element element, const progra
   element.tag.line = command.line;
   element.tag.file = command.file;
   const path::Flaw flaw = add(element);
+  if (flaw == path::Flaw::none) elements_.driven(element, at_);
   at_ = element.to;
   if (flaw == path::Flaw::none) return std::nullopt;
   begin_anew();

@@ -53,7 +53,14 @@ int PathElements::foreign_axis(const program::Command& command, const program::P
   return -1;
 }
 
+void PathElements::restart(std::uint32_t machine_axes) noexcept {
+  own(machine_axes);
+  fastest_rps_ = 0.0;
+}
+
+/// A spindle word rests, and the spindle has its time.
 void PathElements::take(const program::Spindle& spindle) {
+  fastest_rps_ = 0.0;
   if (spindle.surface_speed) {
     surface_speed_ = spindle.speed;
     surface_limit_rpm_ = spindle.limit_rpm;
@@ -144,21 +151,83 @@ void PathElements::set_feed(path::Element& e, const path::Vector& from, const pr
       break;
     case program::FeedUnit::mm_per_rev:
       e.revolutions = rpm(e, from, spindle_at_) / 60.0;
-      e.surface = surface(e, from);
       e.feed = feed.value * e.revolutions;
+      e.surface = surface(e, from);
       break;
   }
 }
 
 path::Surface PathElements::surface(const path::Element& e, const path::Vector& from) const {
-  if (!(surface_speed_ > 0.0) || axes_.surface_speed_axis < 0) return {};
+  if (!by_surface()) return {};
   path::Surface surface;
   surface.speed = surface_speed_ * 1000.0 / 60.0;
   surface.center = surface_center_;
   surface.most = rpm(e, from, SpindleAt::fastest) / 60.0;
   surface.least = std::min(surface.most, axes_.spindle_min_rpm / 60.0);
   surface.axis = static_cast<std::uint8_t>(axes_.surface_speed_axis);
+  follow_spindle(e, from, surface);
   return surface;
+}
+
+/// The path goes with the spindle, so that the square of its speed falls evenly along the path where it slows
+/// down as fast as it can: dn/dt = -a and ds/dt = f n. Gives its speed in the end, and fills Surface::late.
+/// Where the path is slower than its feed the spindle has slowed down more: then it is slower than planned,
+/// which a course follows at once.
+double PathElements::follow_spindle(const path::Element& e, const path::Vector& from,
+                                    path::Surface& surface) const {
+  constexpr double kStep = 0.05, kLeast = 4.0, kMost = 200.0;  // mm, and of them in an element
+  constexpr double kSame = 1.001, kMargin = 1.004;             // of squares
+  const path::Piece piece = path::shape(config_, from, e).piece;
+  const double per_turn = e.feed / e.revolutions;
+  if (!(axes_.spindle_rpm_s > 0.0) || !(per_turn > 0.0) || !(piece.length > 0.0)) return 0.0;
+  const double count = std::clamp(std::ceil(piece.length / kStep), kLeast, kMost);
+  const double step = piece.length / count, fall = axes_.spindle_rpm_s / 30.0 / per_turn;
+  const auto asked = [&](double s) {
+    const double turns = path::turns_at(surface, path::position(piece, s, config_.axis_count), 0.0);
+    return turns * turns;
+  };
+  double square = std::max(asked(0.0), fastest_rps_ * fastest_rps_), late = 0.0, late_from = 0.0;
+  if (square > kSame * asked(0.0)) late = square;
+  for (double k = 1.0; k <= count; ++k) {
+    const double before = square, now = asked(k * step);
+    square = std::max(now, square - fall * step);
+    if (late > 0.0 || square <= kSame * now) continue;
+    late = before;
+    late_from = (k - 1.0) * step;
+  }
+  surface.late = kMargin * late;
+  surface.late_fall = fall;
+  surface.late_from = late_from;
+  return std::sqrt(square);
+}
+
+bool PathElements::by_surface() const { return surface_speed_ > 0.0 && axes_.surface_speed_axis >= 0; }
+
+/// s that an element surely takes, without a feed per revolution.
+double PathElements::shortest_time(const path::Element& e, const path::Vector& from) const {
+  double seconds = 0.0;
+  for (std::size_t i = 0; i < axes_.machine.size(); ++i)
+    seconds = std::max(seconds, std::abs(e.to[i] - from[i]) / config_.limits[i].velocity);
+  const bool slower = e.kind == path::Element::Kind::line && e.feed > 0.0;
+  return slower ? std::max(seconds, length(e, from, 0.0) / e.feed / config_.largest_override) : seconds;
+}
+
+void PathElements::driven(const path::Element& e, const path::Vector& from) {
+  if (!by_surface() || !(axes_.spindle_rpm_s > 0.0)) return;
+  const double asked = rpm(e, e.to, SpindleAt::halfway) / 60.0;
+  if (e.surface.speed > 0.0) {
+    path::Surface surface = e.surface;
+    surface.late = 0.0;
+    fastest_rps_ = std::max(asked, follow_spindle(e, from, surface));
+    return;
+  }
+  fastest_rps_ = std::max(fastest_rps_, rpm(e, from, SpindleAt::fastest) / 60.0);
+  rested(shortest_time(e, from));
+  fastest_rps_ = std::max(fastest_rps_, asked);
+}
+
+void PathElements::rested(double seconds) noexcept {
+  fastest_rps_ = std::max(0.0, fastest_rps_ - axes_.spindle_rpm_s / 60.0 * seconds);
 }
 
 /// Distance from the spindle's axis that its speed on this element is reckoned with.
@@ -176,7 +245,7 @@ double PathElements::radius_of(const path::Element& e, const path::Vector& from_
 
 double PathElements::rpm(const path::Element& e, const path::Vector& from, SpindleAt at) const {
   const double high = axes_.spindle_max_rpm > 0.0 ? axes_.spindle_max_rpm : spindle_rpm_;
-  if (!(surface_speed_ > 0.0) || axes_.surface_speed_axis < 0)
+  if (!by_surface())
     return spindle_rpm_ > 0.0 ? std::clamp(spindle_rpm_, std::min(axes_.spindle_min_rpm, high), high) : 0.0;
   const double limit = surface_limit_rpm_ > 0.0 && axes_.spindle_max_rpm > 0.0
                            ? std::min(surface_limit_rpm_, axes_.spindle_max_rpm)

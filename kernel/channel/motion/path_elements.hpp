@@ -20,6 +20,7 @@ struct AxisMap {
   int surface_speed_axis = -1;       ///< machine axis whose position is the radius for G96; -1: none
   double spindle_min_rpm = 0.0;      ///< to which the spindle limits what it is told
   double spindle_max_rpm = 0.0;      ///< 0: no limit
+  double spindle_rpm_s = 0.0;        ///< by which it slows down, rpm/s; 0: at once
 };
 
 /// Which speed of the spindle a feed per revolution is reckoned with, where a cutting speed changes it along
@@ -41,8 +42,14 @@ class PathElements {
   /// A machine axis that a command would take away from where it `stands`, or whose window it would set,
   /// although it is another process'; -1: none.
   int foreign_axis(const program::Command& command, const program::Position& stands) const;
+  /// A new run: the spindle turns as its programs say.
+  void restart(std::uint32_t machine_axes) noexcept;
   /// From here on feeds per revolution are those of this spindle word.
   void take(const program::Spindle& spindle);
+  /// The path has led along an element, or rested so long: that is how far the spindle has slowed down at
+  /// least.
+  void driven(const path::Element& element, const path::Vector& from);
+  void rested(double seconds) noexcept;
   /// Rapid, Line, Arc, Thread or Probe of a command that begins at `from`; its tag is left empty.
   path::Element element(const program::Command& command, const path::Vector& from) const;
 
@@ -52,6 +59,9 @@ class PathElements {
   void set_feed(path::Element& element, const path::Vector& from, const program::Feed& feed,
                 double arc_length) const;
   path::Surface surface(const path::Element& element, const path::Vector& from) const;
+  double follow_spindle(const path::Element& element, const path::Vector& from, path::Surface& surface) const;
+  bool by_surface() const;
+  double shortest_time(const path::Element& element, const path::Vector& from) const;
   double rpm(const path::Element& element, const path::Vector& from, SpindleAt at) const;
   double radius_of(const path::Element& element, const path::Vector& from, SpindleAt at) const;
 
@@ -60,6 +70,8 @@ class PathElements {
   SpindleAt spindle_at_;
   std::uint32_t own_ = 0;
   double spindle_rpm_ = 0.0;
+  /// Revolutions a second that the spindle may have where the next element begins, and still be slowing down.
+  double fastest_rps_ = 0.0;
   double surface_speed_ = 0.0, surface_limit_rpm_ = 0.0, surface_center_ = 0.0;
 };
 

@@ -153,6 +153,7 @@ void Ways::put(const Part& part, bool last, const path::Vector& at, double feed)
     e.revolutions = 0.0;  // a spindle that turns faster would drive it faster
     e.surface = {};
   }
+  e.surface.late = 0.0;  // the spindle has had its time
   if (number == 0) join(e, path::position(shape, part.begin, config_.axis_count), number + kToBegin);
   if (is_back && part.end <= 0.0 && part.element > first_)
     e.transition = driven(part.element - 1).element.transition;

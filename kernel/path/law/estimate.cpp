@@ -132,7 +132,7 @@ void ClockEstimate::sample(const Run& run, double end) {
     leg = run.leg_at(u, leg);
     legs_[i] = &run.leg(leg);
     at_[i] = run.at(u, leg);
-    feeds_[i] = feed_at(*legs_[i], at_[i]);
+    feeds_[i] = feed_at(*legs_[i], at_[i], u);
     if (transformation_ != &identity()) at_[i] = to_axes(*transformation_, at_[i], axes_);
   }
 }

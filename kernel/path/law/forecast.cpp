@@ -112,8 +112,8 @@ void SpeedForecast::place(const Run& run, double end) {
     Place& p = places_[i];
     p.leg = &run.leg(leg);
     p.at = run.at(u, leg);
-    p.cap = feed_at(*p.leg, p.at);
-    p.turns = p.leg->surface.speed > 0.0 ? turns_at(*p.leg, p.at) : 0.0;
+    p.cap = feed_at(*p.leg, p.at, u);
+    p.turns = p.leg->surface.speed > 0.0 ? turns_at(*p.leg, p.at, u) : 0.0;
     if (transformation_ != &identity()) p.at = to_axes(*transformation_, p.at, axes_);
   }
 }

@@ -162,7 +162,7 @@ void Pipeline::publish() {
     knot.place = last.places[k];
     knot.control = last.controls[k + 2];
     leg_ = run_.leg_at(knot.place, leg_);
-    knot.turns = turns_at(run_.leg(leg_), run_.at(knot.place, leg_));
+    knot.turns = turns_at(run_.leg(leg_), run_.at(knot.place, leg_), knot.place);
     sink_.put(knot);
     ++counts_.knots;
   }

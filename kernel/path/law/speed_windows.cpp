@@ -137,7 +137,7 @@ void SpeedWindows::bounds(const Run& run, const Kept<double>& places, std::size_
     bound.feed = std::numeric_limits<double>::infinity();
     const Vector x = run.at(u, leg);
     for (std::size_t n = first; n < end; ++n) {
-      bound.feed = std::min(bound.feed, kFeedShare * feed_at(run.leg(n), x));
+      bound.feed = std::min(bound.feed, kFeedShare * feed_at(run.leg(n), x, u));
       if (n > first) bound.feed = std::min(bound.feed, kFeedShare * run.leg(n).corner);
     }
     bound.limits = merged(run, first, end);

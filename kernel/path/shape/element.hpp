@@ -97,13 +97,19 @@ struct Surface {
   double center = 0.0;             ///< mm: of the spindle, along `axis`
   double least = 0.0, most = 0.0;  ///< revolutions a second on this element, > 0
   std::uint8_t axis = 0;           ///< path axis of the tool's distance
+  /// A spindle that cannot slow down as fast as that is faster: from `late_from` mm of the element on the
+  /// square of its revolutions a second is `late`, less `late_fall` in each mm. 0: it is nowhere.
+  double late = 0.0, late_fall = 0.0, late_from = 0.0;
 };
 
-/// Speed of the spindle at a place of an element, revolutions a second. real-time safe.
-inline double turns_at(const Surface& surface, const Vector& x) noexcept {
+/// Speed of the spindle at a place of an element, `s` mm behind its begin, revolutions a second. real-time
+/// safe.
+inline double turns_at(const Surface& surface, const Vector& x, double s) noexcept {
   const double around = 2.0 * std::numbers::pi * std::abs(x[surface.axis] - surface.center);
   const double free = around * surface.most > surface.speed ? surface.speed / around : surface.most;
-  return std::max(surface.least, free);
+  const double asked = std::max(surface.least, free);
+  const double late = surface.late - surface.late_fall * (s - surface.late_from);
+  return s >= surface.late_from && late > asked * asked ? std::sqrt(late) : asked;
 }
 
 /// Motion by the angle of the spindle: the path parameter goes with the measured revolutions.

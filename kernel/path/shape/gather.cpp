@@ -34,6 +34,28 @@ double corner_speed(const Config& config, const Transition& transition, const Pi
   return std::sqrt(a * transition.erf * s / (1.0 - s));
 }
 
+/// While a path speeds up from rest the spindle slows down more than along the same way at its feed.
+void slow_down_from_rest(Leg& leg) {
+  Surface& surface = leg.surface;
+  if (!(surface.late > 0.0) || surface.late_from > 0.0) return;
+  const double turns = std::sqrt(surface.late), per_turn = leg.feed / leg.revolutions;
+  constexpr double kAsked = 1.01, kWhileMoving = 0.3;  // of the turns; of the time to speed up
+  double a = kNone, j = kNone;
+  for (std::size_t i = 0; i < kMaxAxes; ++i) {
+    if (!moves(leg, i)) continue;
+    a = std::min(a, (*leg.limits)[i].acceleration);
+    j = std::min(j, (*leg.limits)[i].jerk);
+  }
+  // It begins to slow down when it is asked to, that is where the path moves already.
+  Surface asked = surface;
+  asked.late = 0.0;
+  const double begun = turns_at(asked, evaluate(leg.piece, 0.0, kMaxAxes).x, 0.0);
+  const double share = turns > kAsked * begun ? 0.5 : kWhileMoving;
+  const double v = per_turn * turns, seconds = v > a * a / j ? v / a + a / j : 2.0 * std::sqrt(v / j);
+  const double left = std::max(0.0, turns - 0.5 * surface.late_fall * per_turn * share * seconds);
+  surface.late = left * left;
+}
+
 }  // namespace
 
 void Gather::restart(const Vector& at) {
@@ -90,10 +112,11 @@ void Gather::put(const Element& e, const Piece& piece) {
   }
   if (e.revolutions > 0.0 && e.surface.speed > 0.0) {
     leg.surface = e.surface;
-    leg.revolutions = e.surface.most;
-    leg.feed *= e.surface.most / e.revolutions;
+    leg.revolutions = std::max(e.surface.most, std::sqrt(e.surface.late));
+    leg.feed *= leg.revolutions / e.revolutions;
   }
   leg.limits = &config_.limits;
+  if (!open_) slow_down_from_rest(leg);
   leg.axes = axes_moved(config_, piece);
   if (open_) leg.corner = corner_speed(config_, before_, last_, piece);
   const double own = goes_on(e) ? e.transition.tolerance : 0.0, begin = open_ ? before_.tolerance : 0.0;
@@ -157,7 +180,7 @@ bool Gather::put_with_cruise(const Leg& leg) {
   constexpr double kLeastGain = 0.08;  // s
   constexpr double kHardly = 1.001;    // faster than the middle, beside it: the first clock steps no higher
   const bool arc = leg.piece.shape == Piece::Shape::arc;
-  if (leg.surface.speed > 0.0 && (arc || leg.piece.c1[leg.surface.axis] != 0.0))
+  if (leg.surface.speed > 0.0 && (arc || leg.piece.c1[leg.surface.axis] != 0.0 || leg.surface.late > 0.0))
     return false;  // no constant speed
   double end = 0.0;
   const double v = cruise_speed(leg, end), middle = leg.piece.length - 2.0 * end;

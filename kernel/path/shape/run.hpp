@@ -36,13 +36,14 @@ inline bool moves(const Leg& leg, std::size_t axis) {
 /// Bits of the axes that a piece moves; 0: the identity, its coordinates.
 std::uint32_t axes_moved(const Config& config, const Piece& piece);
 
-/// Revolutions a second that the leg is planned for at its place `x`; 0: feed per time.
-inline double turns_at(const Leg& leg, const Vector& x) {
-  return leg.surface.speed > 0.0 ? turns_at(leg.surface, x) : leg.revolutions;
+/// Revolutions a second that the leg is planned for at its place `x`, path parameter `u`; 0: feed per time.
+inline double turns_at(const Leg& leg, const Vector& x, double u) {
+  return leg.surface.speed > 0.0 ? turns_at(leg.surface, x, leg.piece.offset + u - leg.begin)
+                                 : leg.revolutions;
 }
-/// Feed at its place `x`.
-inline double feed_at(const Leg& leg, const Vector& x) {
-  return leg.surface.speed > 0.0 ? leg.feed * turns_at(leg.surface, x) / leg.revolutions : leg.feed;
+/// Feed there.
+inline double feed_at(const Leg& leg, const Vector& x, double u) {
+  return leg.surface.speed > 0.0 ? leg.feed * turns_at(leg, x, u) / leg.revolutions : leg.feed;
 }
 
 /// No speed of the parameter is higher than this, mm/s or degrees/s.

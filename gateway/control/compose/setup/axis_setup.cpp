@@ -310,6 +310,7 @@ channel::ProcessConfig process_config(const machine::MachineConfig& m, int index
   if (const machine::SpindleConfig* spindle = m.spindle_of_process(index); spindle != nullptr) {
     c.axes.spindle_min_rpm = spindle->min_speed;
     c.axes.spindle_max_rpm = spindle->max_speed;
+    c.axes.spindle_rpm_s = spindle->acceleration;
   }
   c.handshake_timeout_s = m.plc.handshake_timeout;
   return c;
