@@ -160,6 +160,26 @@ TEST(Hold, on_a_cam_at_the_limits_rests_in_a_third_of_a_second_on_average_and_ke
   }
 }
 
+TEST(Hold, while_the_speed_comes_back_from_another_one_is_no_longer) {
+  const PublishedCourse c(cam(60, 200));
+  RateMotion motion(c.limits);
+  for (int n = 0; n < 1500; ++n) motion.step(c, 1.0, 0.001);
+  while (!motion.at_rest()) motion.step(c, 0.0, 0.001);
+  double taken = 0.0;
+  int holds = 0, longest = 0;
+  for (int n = 0; n < 900 && motion.step(c, 1.0, 0.001); ++n) {
+    if (n < 20 || n % 3 != 0) continue;
+    const Hold h = hold(c, motion);
+    taken += h.cycles;
+    longest = std::max(longest, h.cycles);
+    ++holds;
+    EXPECT_LE(std::max(h.reached.acceleration, h.reached.jerk), 1.001) << n;
+  }
+  std::printf("%d holds: %.0f cycles on average, at most %d\n", holds, taken / holds, longest);
+  EXPECT_LE(taken, 300.0 * holds);
+  EXPECT_LE(longest, 600);
+}
+
 TEST(Hold, on_the_way_back_along_a_cam_keeps_all_limits_and_is_as_soon) {
   const PublishedCourse c(cam(60, 200));
   RateMotion motion(c.limits);

@@ -44,6 +44,7 @@ void RateMotion::start(const RateChange& change) noexcept {
   ramp_at_ = -1;
   prepared_ = {};
   sooner_.cycles = 0;
+  sooner_.fits = false;
   stuck_ = creeping_ = levels_ = false;
   if (change.r1 != 0.0) starving_ = false;
 }
@@ -194,7 +195,7 @@ bool RateMotion::step(const CourseView& view, double target, double period) noex
   begin_prepared(target);
   if (target != 0.0) sooner_ = {};
   begin_sooner_stop();
-  if (sooner_.cycles == 0 || sooner_.fits) seek(view, target, period);
+  if (sooner_.cycles == 0) seek(view, target, period);
   if (target == 0.0) seek_sooner_stop(view, period);
   if (!come_back(view, period) && !stop_in_time(view, target, period)) advance(view, period);
   const bool there = rests_there(view);
