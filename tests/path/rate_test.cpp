@@ -152,7 +152,6 @@ int waits(RateMotion& motion, const Driven& d, double wish) {
 
 TEST(Rate, a_hold_or_a_lower_override_from_full_rate_is_settled_in_the_next_cycle_on_any_path) {
   std::mt19937_64 random(3);
-  int holds = 0, later = 0;
   for (const Driven& d : hard_paths()) {
     const int last = static_cast<int>(d.course.seconds() * 1000) - 100;
     for (int q = 0; q < 60; ++q) {
@@ -163,7 +162,7 @@ TEST(Rate, a_hold_or_a_lower_override_from_full_rate_is_settled_in_the_next_cycl
       ASSERT_FALSE(motion.changing());
       motion.step(d.view, wish, 0.001);
       EXPECT_TRUE(motion.changing()) << wish << " at " << at;
-      // What was settled and not begun: at its knot, or behind the place to which the law slows down.
+      // What was settled and not begun begins soon, or in its knot.
       const auto speed = [&] {
         const Vector v = motion.point(d.view).v;
         return std::hypot(v[0], v[1], v[2]);
@@ -174,12 +173,9 @@ TEST(Rate, a_hold_or_a_lower_override_from_full_rate_is_settled_in_the_next_cycl
         now = speed();
         cycles += now < before ? 0 : 1;
       }
-      EXPECT_LE(cycles, wish == 0.0 ? 100 : 17) << wish << " at " << at;
-      later += cycles > 17 ? 1 : 0;
-      ++holds;
+      EXPECT_LE(cycles, 17) << wish << " at " << at;
     }
   }
-  std::printf("%d of %d began behind a slow place\n", later, holds);
 }
 
 /// The shortest stop of one piece that could begin in this cycle, by looking at all lengths, s; kLongest if

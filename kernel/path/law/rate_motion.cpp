@@ -41,7 +41,6 @@ void RateMotion::start(const RateChange& change) noexcept {
   into_ = 0.0;
   active_ = true;
   on_ramp_ = on_plan_ = false;
-  ramp_at_ = -1;
   prepared_ = {};
   sooner_.cycles = 0;
   sooner_.fits = false;
@@ -70,11 +69,9 @@ bool RateMotion::stop_at(const CourseView& view, const StopHint& hint, double pe
 bool RateMotion::stop_in_time(const CourseView& view, double target, double period) noexcept {
   settled_ = false;
   if (active_) return false;
-  if (start_ramp_ahead(view, period)) return true;
-  settled_ = ramp_at_ >= 0;
-  if (!settled_ && target >= 0.0 && target < rate_) {
+  if (target >= 0.0 && target < rate_) {
     const StopHint hint = view.stop_near(knot_);
-    if (!ahead_.goes_on && stop_at(view, hint, period)) return true;
+    if (stop_at(view, hint, period)) return true;
     settled_ = until(view, hint) > 0.0;
   }
   if (view.end() >= 0 || !stop_at(view, view.guard(), period)) return false;
@@ -191,7 +188,7 @@ void RateMotion::seek(const CourseView& view, double target, double period) noex
 
 bool RateMotion::step(const CourseView& view, double target, double period) noexcept {
   left_ = kMostPlaces;
-  forget_ramps(target);
+  if (target == wanted()) ramp_tried_ = false;
   begin_prepared(target);
   if (target != 0.0) sooner_ = {};
   begin_sooner_stop();

@@ -28,8 +28,7 @@ class RateMotion {
   double rate() const noexcept { return rate_; }
   const LawTime& time() const noexcept { return time_; }
   std::int64_t knot() const noexcept { return knot_; }
-  /// A change is on its way, or settled: it begins in the knot of a stop that is known, a few ahead, or
-  /// where the law has slowed down before a corner.
+  /// A change is on its way, or settled: it begins in the knot of a stop that is known, a few ahead.
   bool changing() const noexcept { return active_ || settled_; }
   bool at_rest() const noexcept { return !active_ && rate_ == 0.0; }
   /// A change is on its way.
@@ -48,10 +47,7 @@ class RateMotion {
   void start(const RateChange& change) noexcept;
   bool ramp(const CourseView& view, double target, double period) noexcept;
   bool slows_down(const CourseView& view) const noexcept;
-  bool ramp_ahead(const CourseView& view, const StopHint& hint) noexcept;
-  void forget_ramps(double target) noexcept;
-  bool start_ramp_ahead(const CourseView& view, double period) noexcept;
-  bool early(const CourseView& view, double target, const StopHint& hint, double period) noexcept;
+  bool early(const CourseView& view, double target, double period) noexcept;
   bool follow_ramp(const CourseView& view, double target, double period, int& places) noexcept;
   Fit enter(const CourseView& view, double target, double seconds, int power, double period) noexcept;
   bool stop_at(const CourseView& view, const StopHint& hint, double period) noexcept;
@@ -65,7 +61,6 @@ class RateMotion {
   void begin_prepared(double target) noexcept;
   bool is_at(const LawTime& time, double rate, double slope) const noexcept;
   double seconds_to_rest(const CourseView& view) const noexcept;
-  double begins_in(const CourseView& view) const noexcept;
   void begin_sooner_stop() noexcept;
   void seek_sooner_stop(const CourseView& view, double period) noexcept;
   bool near_last_stop(const CourseView& view) const noexcept;
@@ -82,19 +77,9 @@ class RateMotion {
   std::int64_t knot_ = 1;
   double rate_ = 1.0, slope_ = 0.0;
   RateChange change_;
-  PathRamp ramp_;              ///< goes before the change
-  LawTime ramp_rests_;         ///< where it leads to, if it is a stop
-  bool ramp_tried_ = false;    ///< in the cycle before, in vain
-  std::int64_t ramp_at_ = -1;  ///< the ramp begins in this knot
-  struct Ahead {
-    int cycles = 0, looked = 0, behind = 0;  ///< knots that were looked at, and those behind the slowest one
-    std::int64_t knot = 1;
-    double slowest = 0.0;
-    bool slowing = false;  ///< the law, where the search began
-    bool goes_on = false;  ///< in the next cycle
-  };
-  Ahead ahead_;        ///< the search for a knot where it may begin
-  double into_ = 0.0;  ///< the ramp, or the change, s
+  PathRamp ramp_;            ///< goes before the change
+  bool ramp_tried_ = false;  ///< in the cycle before, in vain
+  double into_ = 0.0;        ///< the ramp, or the change, s
   bool active_ = false, on_ramp_ = false, on_plan_ = false;
   bool starving_ = false, settled_ = false, stuck_ = false;
   double searched_for_ = 2.0;  ///< target of the search

@@ -130,8 +130,8 @@ void RateMotion::search(const CourseView& view, double target, double period) no
     anew();
     ramp_tried_ = false;
     share_ = 1.0;
-    if (early(view, target, hint, period)) return;
-  } else if (preparing(view) || left_ <= 0 || early(view, target, hint, period)) {
+    if (early(view, target, period)) return;
+  } else if (preparing(view) || left_ <= 0 || early(view, target, period)) {
     return;
   } else if (active_ && !levels_ && target < rate_ && slope_ > 0.0 && level_off(view, period)) {
     return;
@@ -159,17 +159,9 @@ void RateMotion::search(const CourseView& view, double target, double period) no
 double RateMotion::seconds_to_rest(const CourseView& view) const noexcept {
   constexpr double kNotKnown = 2.0;
   if (active_) return wanted() == 0.0 ? change_.seconds - into_ : kNotKnown;
-  const double in = begins_in(view);
-  if (in < 0.0) return kNotKnown;
-  return in + (ramp_at_ >= 0 ? ramp_.seconds() : view.stop_near(knot_).seconds / rate_);
-}
-
-/// Seconds until the stop begins that is settled; below 0: there is none.
-double RateMotion::begins_in(const CourseView& view) const noexcept {
-  if (active_ || !(rate_ > 0.0)) return -1.0;
-  if (ramp_at_ < 0) return until(view, view.stop_near(knot_));
-  const Knot* knot = view.knot(ramp_at_);
-  return knot == nullptr ? -1.0 : std::max(0.0, knot->t.since(time_) / rate_);
+  const StopHint hint = view.stop_near(knot_);
+  const double in = until(view, hint);
+  return in < 0.0 ? kNotKnown : in + hint.seconds / rate_;
 }
 
 /// Where the motion has come to where it was foreseen.
@@ -194,7 +186,7 @@ void RateMotion::seek_sooner_stop(const CourseView& view, double period) noexcep
   if (rate_ == 0.0 || std::abs(rate_) > 1.0 || sooner_.fits) return;
   if (sooner_.cycles == 0) {
     if (left_ < kLeast || prepared_.cycles > 0) return;
-    const double in = kAhead * period, settled_in = begins_in(view);
+    const double in = kAhead * period, settled_in = until(view, view.stop_near(knot_));
     const double within = seconds_to_rest(view) - in - kGain;
     CourseState at;
     if (within < kShortest || (settled_in >= 0.0 && settled_in <= in) || !foresee(view, in, at)) return;
