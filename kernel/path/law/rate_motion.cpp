@@ -24,9 +24,9 @@ void RateMotion::advance(const CourseView& view, double period) noexcept {
     time_ = time_.plus(rate_ * period);
     return;
   }
-  const double before = on_plan_ ? plan_.at(into_).passed : change_.at(into_).passed;
+  const double before = change_at(into_).passed;
   into_ += period;
-  const RateState now = on_plan_ ? plan_.at(into_) : change_.at(into_);
+  const RateState now = change_at(into_);
   time_ = time_.plus(now.passed - before);
   rate_ = now.rate;
   slope_ = now.slope;

@@ -45,6 +45,7 @@ class RateMotion {
   void advance(const CourseView& view, double period) noexcept;
   void advance_on_ramp(const CourseView& view, double period) noexcept;
   void start(const RateChange& change) noexcept;
+  RateState change_at(double t) const noexcept { return on_plan_ ? plan_.at(t) : change_.at(t); }
   bool ramp(const CourseView& view, double target, double period) noexcept;
   bool slows_down(const CourseView& view) const noexcept;
   bool early(const CourseView& view, double target, double period) noexcept;

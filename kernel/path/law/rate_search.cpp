@@ -45,8 +45,8 @@ bool RateMotion::foresee(const CourseView& view, double in, CourseState& at) con
     if (into_ + in >= ramp.seconds() || !ramp.go(view, limits_, into_ + in)) return false;
     at = {ramp.time(), ramp.knot(), ramp.state().rate, ramp.state().slope};
   } else {
-    const RateState now = on_plan_ ? plan_.at(into_) : change_.at(into_);
-    const RateState then = on_plan_ ? plan_.at(into_ + in) : change_.at(into_ + in);
+    const RateState now = change_at(into_);
+    const RateState then = change_at(into_ + in);
     at = {time_.plus(then.passed - now.passed), knot_, then.rate, then.slope};
   }
   CoursePlace place(view);
